@@ -1,0 +1,292 @@
+"""Where bodies touch at a node: the plane that separates their particles, and how far each reaches across.
+
+Source: Nairn, Hammerquist and Smith (2020), New material point method contact algorithms for improved
+accuracy, large-deformation problems, and proper null-space filtering, CMAME 362, 112859.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.contact.deferred import deferred_kernel
+from solver.contact.law import Array, ContactScene
+from solver.contact.particle_shapes import ParticleShapes, particle_shapes, shape_of
+from solver.contact.vectors import dot, length, over, plus, put_vector, times, vector_at
+from solver.declare import Vector
+from solver.dispatch import inline
+from solver.interpolation.shape import MOST_NODES, particle_domain
+from solver.nodal import EMPTY_MASS
+from solver.tensor import tensor_at
+
+NO_ALPHA = -1
+LEAST_SHARE = 1.0e-8
+"""Share of the nodal mass from which a material counts as being at a node."""
+LEAST_MASS = 1.0e-16
+"""Mass above which a material counts as being at a node."""
+LEAST_RIGID_MASS = 1.0e-90
+LEAST_WEIGHT = 1.0e-8
+"""Shape function above which a particle takes part in the regression at a node."""
+PENALTY = 1.0e-7
+"""Penalty on the slope of the separating plane, times the square of the cell size in x."""
+TOLERANCE = 1.0e-7
+MOST_ITERATIONS = 51
+ON_SURFACE = 0.9
+"""Value of ``Particles.surface`` above which a particle may be the most prominent of its body."""
+TINY = 1.0e-100
+"""Added to lengths that are divided by."""
+
+
+class TouchingSurfaces(NamedTuple):
+    """What contact by logistic regression knows of each node."""
+
+    alpha: Array
+    """(N,) the material that the normal points away from; NO_ALPHA where fewer than two bodies meet."""
+    normal: Array
+    """(N, 3) unit normal of the separating plane, from the alpha material to the others."""
+    prominence: Array
+    """(M, N) position along the normal that the body's surface reaches: the farthest of the alpha material,
+    the nearest of another; minus infinity where it has no surface particle."""
+
+
+class Neighbours(NamedTuple):
+    """The particles around each node where bodies meet, material after material."""
+
+    start: Array
+    """(N + 1,) first entry of each node."""
+    position: Array
+    """(K, 3)"""
+    side: Array
+    """(K,) -1 for a particle of the alpha material, 1 for another."""
+
+
+def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
+    """Alpha materials, normals and prominences of a scene; use it with ``scene.once``."""
+    alpha = alpha_materials(scene)
+    shapes = [particle_shapes(scene, m) for m in range(len(scene.particles))]
+    counts = np.zeros(scene.nodal.mass.shape, np.int64)
+    near = [count_neighbours(shape, alpha, counts[m]) for m, shape in enumerate(shapes)]
+    alpha[np.count_nonzero(counts, axis=0) < 2] = NO_ALPHA
+
+    neighbours = _neighbours(alpha, counts, shapes, near)
+    normal = np.zeros((len(alpha), 3))
+    separate(np.flatnonzero(alpha != NO_ALPHA), neighbours, PENALTY * scene.grid.spacing[0] ** 2, normal)
+    scene.boundary_conditions.apply_symmetry(normal, 0)
+    normal /= np.linalg.norm(normal, axis=1)[:, None] + TINY
+    normal[alpha == NO_ALPHA] = 0.0
+
+    surfaces = TouchingSurfaces(alpha, normal, np.full(counts.shape, -np.inf))
+    for m, shape in enumerate(shapes):
+        prominent = near[m] & (scene.particles[m].surface > ON_SURFACE)
+        reach(shape, np.flatnonzero(prominent), scene.grid.spacing, m, surfaces)
+    return surfaces
+
+
+def alpha_materials(scene: ContactScene) -> Array:
+    """(N,) at the patches' nodes that several materials share, a rigid one, else that of most mass."""
+    mass = scene.nodal.mass
+    possible = np.array(scene.possible_alpha, bool)[:, None]
+    present = possible & (mass > LEAST_SHARE * (EMPTY_MASS + mass.sum(axis=0))) & (mass > LEAST_MASS)
+    alpha = np.argmax(np.where(present, mass, 0.0), axis=0)
+    rigid = possible & np.array(scene.rigid, bool)[:, None] & (mass > LEAST_RIGID_MASS)
+    alpha = np.where(rigid.any(axis=0), np.argmax(np.where(rigid, mass, 0.0), axis=0), alpha)
+    shared = scene.owned_nodes & (np.count_nonzero(present, axis=0) >= 2)
+    return np.where(shared, alpha, NO_ALPHA)
+
+
+def _neighbours(alpha: Array, counts: Array, shapes: list[ParticleShapes], near: list[Array]) -> Neighbours:
+    at_node = np.where(alpha == NO_ALPHA, 0, counts.sum(axis=0))
+    start = np.concatenate([[0], np.cumsum(at_node)])
+    neighbours = Neighbours(start, np.empty((start[-1], 3)), np.empty(start[-1]))
+    following = start[:-1].copy()
+    for m, shape in enumerate(shapes):
+        list_neighbours(shape, np.flatnonzero(near[m]), m, alpha, following, neighbours)
+    return neighbours
+
+
+@deferred_kernel
+def count_neighbours(shapes: ParticleShapes, alpha: Array, counts: Array) -> Array:
+    """Count the particles at each shared node (N,); returns (n,) which particles touch such a node."""
+    nodes, weights, gradients = (
+        np.empty(MOST_NODES, np.int64),
+        np.empty(MOST_NODES),
+        np.empty((MOST_NODES, 3)),
+    )
+    near = np.zeros(shapes.position.shape[0], np.bool_)
+    latest = np.full(alpha.shape[0], -1)
+    for p in range(shapes.position.shape[0]):
+        for k in range(shape_of(shapes, p, nodes, weights, gradients)):
+            n = shapes.images.node[nodes[k]]
+            if alpha[n] == NO_ALPHA:
+                continue
+            near[p] = near[p] or weights[k] > 0.0
+            # Some interpolators name a node more than once.
+            if weights[k] > LEAST_WEIGHT and latest[n] != p:
+                latest[n] = p
+                counts[n] += 1
+    return near
+
+
+@deferred_kernel
+def list_neighbours(
+    shapes: ParticleShapes,
+    particles: Array,
+    material: int,
+    alpha: Array,
+    following: Array,
+    neighbours: Neighbours,
+) -> None:
+    """Enter particles of a material in the lists of the shared nodes; ``following`` (N,) is their end."""
+    nodes, weights, gradients = (
+        np.empty(MOST_NODES, np.int64),
+        np.empty(MOST_NODES),
+        np.empty((MOST_NODES, 3)),
+    )
+    latest = np.full(alpha.shape[0], -1)
+    for p in particles:
+        for k in range(shape_of(shapes, p, nodes, weights, gradients)):
+            n = shapes.images.node[nodes[k]]
+            if alpha[n] == NO_ALPHA or weights[k] <= LEAST_WEIGHT or latest[n] == p:
+                continue
+            latest[n] = p
+            x = plus(vector_at(shapes.position, p), vector_at(shapes.images.shift, nodes[k]))
+            put_vector(neighbours.position, following[n], x)
+            neighbours.side[following[n]] = -1.0 if alpha[n] == material else 1.0
+            following[n] += 1
+
+
+@deferred_kernel
+def separate(nodes: Array, neighbours: Neighbours, penalty: float, normal: Array) -> None:
+    """Find the normal (N, 3) of the plane between the alpha material and the others at the given nodes.
+
+    Newton's iteration for the phi that minimises sum (c - f)^2 + penalty |phi|^2 with
+    f = 2 / (1 + exp(-(phi_xyz . x + phi_0))) - 1 and c = -1 or 1 the side of a particle. It ends when the
+    direction stays; if it never does, the direction that changed least is taken.
+    """
+    matrix, right = np.empty((4, 4)), np.empty(4)
+    for n in nodes:
+        phi = np.zeros(4)
+        direction = best = (0.0, 0.0, 0.0)
+        least_change = 1.0
+        for _ in range(MOST_ITERATIONS):
+            newton_system(
+                neighbours, neighbours.start[n], neighbours.start[n + 1], phi, penalty, matrix, right
+            )
+            solve_in_place(matrix, right)
+            for i in range(4):
+                phi[i] += right[i]
+            slope = (phi[0], phi[1], phi[2])
+            turned = over(slope, length(slope) + TINY)
+            change = 1.0 - dot(turned, direction)
+            if change < least_change:
+                least_change, best = change, turned
+            if change < TOLERANCE:
+                break
+            direction = turned
+        put_vector(normal, n, best)
+
+
+@inline
+def newton_system(
+    neighbours: Neighbours, first: int, last: int, phi: Array, penalty: float, matrix: Array, right: Array
+) -> None:
+    """Matrix (4, 4) and right-hand side (4,) of one Newton step over the particles first <= e < last."""
+    x = np.ones(4)
+    for i in range(4):
+        for j in range(4):
+            matrix[i, j] = 0.0
+        weight = penalty if i < 3 else 0.0
+        matrix[i, i] = weight
+        right[i] = -weight * phi[i]
+    for e in range(first, last):
+        for i in range(3):
+            x[i] = neighbours.position[e, i]
+        s = phi[0] * x[0] + phi[1] * x[1] + phi[2] * x[2] + phi[3]
+        decay = math.exp(-abs(s))
+        slope = 2.0 * decay / ((1.0 + decay) * (1.0 + decay))
+        misfit = neighbours.side[e] - math.tanh(0.5 * s)
+        for i in range(4):
+            for j in range(4):
+                matrix[i, j] += slope * slope * x[i] * x[j]
+            right[i] += slope * misfit * x[i]
+
+
+@inline
+def solve_in_place(matrix: Array, right: Array) -> None:
+    """Solve ``matrix @ x = right`` by Gaussian elimination with row pivots; x replaces ``right``."""
+    size = right.shape[0]
+    for i in range(size):
+        pivot = i
+        for j in range(i + 1, size):
+            if abs(matrix[j, i]) > abs(matrix[pivot, i]):
+                pivot = j
+        for k in range(i, size):
+            matrix[i, k], matrix[pivot, k] = matrix[pivot, k], matrix[i, k]
+        right[i], right[pivot] = right[pivot], right[i]
+        for j in range(i + 1, size):
+            factor = matrix[j, i] / matrix[i, i]
+            right[j] -= factor * right[i]
+            for k in range(i, size):
+                matrix[j, k] -= factor * matrix[i, k]
+    for i in range(size - 1, -1, -1):
+        for k in range(i + 1, size):
+            right[i] -= matrix[i, k] * right[k]
+        right[i] /= matrix[i, i]
+
+
+@deferred_kernel
+def reach(
+    shapes: ParticleShapes, particles: Array, spacing: Vector, material: int, surfaces: TouchingSurfaces
+) -> None:
+    """Enter how far the face centres of the given particles of a material reach along the normals."""
+    nodes, weights, gradients = (
+        np.empty(MOST_NODES, np.int64),
+        np.empty(MOST_NODES),
+        np.empty((MOST_NODES, 3)),
+    )
+    prominence = surfaces.prominence[material]
+    for p in particles:
+        edges = edge_vectors(shapes, p, spacing)
+        for k in range(shape_of(shapes, p, nodes, weights, gradients)):
+            n = shapes.images.node[nodes[k]]
+            if surfaces.alpha[n] == NO_ALPHA or weights[k] <= 0.0:
+                continue
+            outwards = 1.0 if surfaces.alpha[n] == material else -1.0
+            normal = vector_at(surfaces.normal, n)
+            x = plus(vector_at(shapes.position, p), vector_at(shapes.images.shift, nodes[k]))
+            along = (dot(edges[0], normal), dot(edges[1], normal), dot(edges[2], normal))
+            half = 0.5 * max(abs(along[0]), abs(along[1]), abs(along[2]))
+            farthest = dot(x, normal) + outwards * half
+            if prominence[n] == -math.inf or outwards * (farthest - prominence[n]) > 0.0:
+                prominence[n] = farthest
+
+
+@inline
+def edge_vectors(shapes: ParticleShapes, p: int, spacing: Vector) -> tuple[Vector, Vector, Vector]:
+    """The vectors r1, r2, r3 of a particle: columns of its domain, r_k times the spacing of direction k."""
+    r = particle_domain(
+        shapes.interpolation, tensor_at(shapes.deformation_gradient, p), tensor_at(shapes.size, p)
+    )
+    return (
+        times(spacing[0], (r.xx, r.yx, r.zx)),
+        times(spacing[1], (r.xy, r.yy, r.zy)),
+        times(spacing[2], (r.xz, r.yz, r.zz)),
+    )
+
+
+@inline
+def overlaps(surfaces: TouchingSurfaces, m: int, n: int) -> bool:
+    """Whether material m and the alpha material reach across each other at node n."""
+    return not surfaces.prominence[m, n] > surfaces.prominence[surfaces.alpha[n], n]
+
+
+@inline
+def slide(relative: Vector, normal: Vector, mu: float) -> Vector:
+    """Change of velocity that ends an approach relative . normal > 0 and, up to Coulomb's limit, the slip."""
+    w = dot(relative, normal)
+    slip = plus(relative, times(-w, normal))
+    tangent = over(slip, length(slip) + TINY)
+    friction = min(mu, dot(relative, tangent) / w) * w
+    return times(-1.0, plus(times(w, normal), times(friction, tangent)))

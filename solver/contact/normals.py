@@ -1,0 +1,141 @@
+"""Surface normals and tractions at the nodes, from the gradient of each material's mass."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.contact.deferred import deferred_kernel
+from solver.contact.law import Array, ContactScene
+from solver.contact.particle_shapes import ParticleShapes, particle_shapes, shape_of
+from solver.contact.vectors import dot, length, minus, over, plus, put_vector, times, vector_at
+from solver.declare import Vector
+from solver.dispatch import inline
+from solver.interpolation.shape import MOST_NODES
+from solver.nodal import EMPTY_MASS
+
+SHORTEST = 1.0e-15
+"""A mass gradient that is not longer has no direction; it stays as it is."""
+
+LEAST_MASS = 1.0e-100
+"""Keeps the mean over the other materials finite where there are none."""
+
+
+class SurfaceFields(NamedTuple):
+    """Where the surface of each material passes the nodes, first axis the material."""
+
+    normal: Array
+    """(M, N, 3) unit vectors out of the body; 0 where there is none."""
+    position: Array
+    """(M, N, 3) mean position of the particles, weighted with mass and shape function."""
+    traction: Array
+    """(M, N) n . sigma . n with sigma the sum of S times the particles' stresses; negative in compression."""
+
+
+def surface_fields(scene: ContactScene) -> SurfaceFields:
+    """Normals, mean positions and normal tractions of all materials; use it with ``scene.once``.
+
+    The normal has the direction of sum_p m_p grad S_ip, which points from the particles to the node. With
+    colinear normals it is the mean of that and of the opposite of the other materials' (weighted with nodal
+    mass), so that two bodies in touch have opposite normals. In axial symmetry the weights are m_p / V_p and
+    the gradients, as in Uintah, those with respect to cell coordinates: where the cells are not square the
+    normal leans towards their long side.
+    """
+    nodal = scene.nodal
+    shape = nodal.velocity.shape
+    fields = SurfaceFields(np.zeros(shape), np.zeros(shape), np.zeros(shape[:2]))
+    spacing = scene.grid.spacing
+    scale = (spacing[0], spacing[1], 0.0) if scene.axisymmetric else (1.0, 1.0, 1.0)
+    stress = np.zeros((*shape[:2], 6))
+    for m, particles in enumerate(scene.particles):
+        add_particles(
+            particle_shapes(scene, m),
+            particles.mass,
+            particles.mass / particles.volume if scene.axisymmetric else particles.mass,
+            scale,
+            particles.stress,
+            fields.normal[m],
+            fields.position[m],
+            stress[m],
+        )
+    if scene.colinear_normals:
+        make_colinear(fields.normal, nodal.mass)
+    for m in range(shape[0]):
+        scene.boundary_conditions.apply_symmetry(fields.normal[m], m)
+    finish(fields, nodal.mass, stress)
+    return fields
+
+
+@deferred_kernel
+def add_particles(
+    shapes: ParticleShapes,
+    mass: Array,
+    gradient_weight: Array,
+    gradient_scale: Vector,
+    stress: Array,
+    nodal_gradient: Array,
+    nodal_moment: Array,
+    nodal_stress: Array,
+) -> None:
+    """Sum gradients, mass times position, and stress (xx, yy, zz, xy, xz, yz) of one material's particles."""
+    nodes = np.empty(MOST_NODES, np.int64)
+    weights = np.empty(MOST_NODES)
+    gradients = np.empty((MOST_NODES, 3))
+    for p in range(mass.shape[0]):
+        for k in range(shape_of(shapes, p, nodes, weights, gradients)):
+            n = shapes.images.node[nodes[k]]
+            x = plus(vector_at(shapes.position, p), vector_at(shapes.images.shift, nodes[k]))
+            for axis in range(3):
+                nodal_gradient[n, axis] += gradient_weight[p] * gradients[k, axis] * gradient_scale[axis]
+                nodal_moment[n, axis] += x[axis] * mass[p] * weights[k]
+                nodal_stress[n, axis] += stress[p, axis, axis] * weights[k]
+            nodal_stress[n, 3] += stress[p, 0, 1] * weights[k]
+            nodal_stress[n, 4] += stress[p, 0, 2] * weights[k]
+            nodal_stress[n, 5] += stress[p, 1, 2] * weights[k]
+
+
+@deferred_kernel
+def make_colinear(normal: Array, mass: Array) -> None:
+    """n_m <- (n_m - sum_k m_k n_k / sum_k m_k) / 2 over the other materials k; 0 where m has no mass."""
+    materials, count = mass.shape
+    averaged = np.empty((materials, 3))
+    for n in range(count):
+        for m in range(materials):
+            others, total = (0.0, 0.0, 0.0), 0.0
+            for k in range(materials):
+                if k != m:
+                    others = plus(others, times(mass[k, n], vector_at(normal[k], n)))
+                    total += mass[k, n]
+            difference = minus(vector_at(normal[m], n), over(others, total + LEAST_MASS))
+            put_vector(averaged, m, times(0.5 if mass[m, n] > EMPTY_MASS else 0.0, difference))
+        for m in range(materials):
+            put_vector(normal[m], n, vector_at(averaged, m))
+
+
+@deferred_kernel
+def finish(fields: SurfaceFields, mass: Array, stress: Array) -> None:
+    """Make normals unit vectors and moments positions, and take the tractions."""
+    materials, count = mass.shape
+    for m in range(materials):
+        for n in range(count):
+            normal = vector_at(fields.normal[m], n)
+            size = length(normal)
+            if size > SHORTEST:
+                normal = over(normal, size)
+            put_vector(fields.normal[m], n, normal)
+            fields.traction[m, n] = normal_component(stress[m], n, normal)
+            put_vector(fields.position[m], n, over(vector_at(fields.position[m], n), mass[m, n]))
+
+
+@inline
+def normal_component(stress: Array, n: int, normal: Vector) -> float:
+    """The product n . sigma . n for a symmetric tensor stored as xx, yy, zz, xy, xz, yz."""
+    xx, yy, zz = stress[n, 0], stress[n, 1], stress[n, 2]
+    xy, xz, yz = stress[n, 3], stress[n, 4], stress[n, 5]
+    sigma_n = (
+        xx * normal[0] + xy * normal[1] + xz * normal[2],
+        xy * normal[0] + yy * normal[1] + yz * normal[2],
+        xz * normal[0] + yz * normal[1] + zz * normal[2],
+    )
+    return dot(sigma_n, normal)

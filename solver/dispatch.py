@@ -1,0 +1,64 @@
+"""Functions whose implementation is chosen by the class of the model they are given.
+
+:func:`generic` declares such a function, :func:`implements` gives it a body for one model, and :func:`inline`
+marks a helper that kernels call. None of this imports numba: a deck can be checked without it. When kernels
+are needed, ``solver.jit`` hands everything that was declared here to numba, which then specialises each kernel
+for the models it is called with, with no branch left in the machine code.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+GENERICS: list[Callable[..., Any]] = []
+INLINES: list[Callable[..., Any]] = []
+_listeners: list[Callable[[str, Callable[..., Any]], None]] = []
+
+
+def listen(listener: Callable[[str, Callable[..., Any]], None]) -> None:
+    """Call ``listener(kind, function)`` for all that is declared, now and later (used by ``solver.jit``)."""
+    _listeners.append(listener)
+    for function in GENERICS:
+        listener("generic", function)
+    for function in INLINES:
+        listener("inline", function)
+
+
+def generic(function: Function) -> Function:
+    """Declare a function chosen by the class of its first argument; the body given here is only its signature."""
+    implementations: dict[type, Callable[..., Any]] = {}
+
+    @functools.wraps(function)
+    def call(model: Any, *args: Any) -> Any:
+        if type(model) not in implementations:
+            raise TypeError(f"{function.__name__} has no implementation for {type(model).__name__}")
+        return implementations[type(model)](model, *args)
+
+    call.implementations = implementations  # type: ignore[attr-defined]  # functions take attributes
+    GENERICS.append(call)
+    for listener in _listeners:
+        listener("generic", call)
+    return call  # type: ignore[return-value]  # same signature by wraps
+
+
+def implements(generic_function: Callable[..., Any], *classes: type) -> Callable[[Function], Function]:
+    """Decorator: the body of ``generic_function`` for models of the given class(es)."""
+
+    def register(body: Function) -> Function:
+        for cls in classes:
+            generic_function.implementations[cls] = body  # type: ignore[attr-defined]  # set by generic
+        return body
+
+    return register
+
+
+def inline(function: Function) -> Function:
+    """Mark a plain function as callable from kernels."""
+    INLINES.append(function)
+    for listener in _listeners:
+        listener("inline", function)
+    return function

@@ -1,0 +1,134 @@
+"""The background grid: one level of equal cells, made of boxes, cut into patches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.declare import IntVector, Vector
+
+Array = NDArray[Any]
+
+
+class GridIndex(NamedTuple):
+    """What kernels know of the grid. Node (i, j, k) lies at anchor + (i, j, k) * spacing.
+
+    Nodes are stored flat, x fastest: ``(i - first_x) + nodes_x * ((j - first_y) + nodes_y * (k - first_z))``,
+    extra nodes around the domain included, so ``first`` is -1 where there is a layer of extra cells.
+    """
+
+    anchor: Vector
+    spacing: Vector
+    first: IntVector
+    nodes: IntVector
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A block of cells low <= (i, j, k) < high, extra cells not included."""
+
+    id: int
+    low: IntVector
+    high: IntVector
+
+
+FACES = ("x-", "x+", "y-", "y+", "z-", "z+")
+"""The six faces in the order in which boundary conditions are applied."""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A level of the grid.
+
+    Attributes
+    ----------
+    anchor : position of node (0, 0, 0).
+    spacing : cell sizes.
+    cells : number of cells of the bounding box in each direction, extra cells not included.
+    extra_cells : layers of cells around the domain that belong to no body, in each direction.
+    periodic : 1 in the directions in which the domain repeats, else 0.
+    patches : the blocks that tile the domain.
+    """
+
+    anchor: Vector
+    spacing: Vector
+    cells: IntVector
+    extra_cells: IntVector
+    periodic: IntVector
+    patches: tuple[Patch, ...]
+
+    @property
+    def ghost(self) -> IntVector:
+        """Layers of nodes stored outside the domain: the extra cells, or images where it is periodic."""
+        e, p = self.extra_cells, self.periodic
+        return (max(e[0], p[0]), max(e[1], p[1]), max(e[2], p[2]))
+
+    @property
+    def index(self) -> GridIndex:
+        """The view of the grid for kernels."""
+        g, n = self.ghost, self.cells
+        first = (-g[0], -g[1], -g[2])
+        nodes = (n[0] + 1 + 2 * g[0], n[1] + 1 + 2 * g[1], n[2] + 1 + 2 * g[2])
+        return GridIndex(self.anchor, self.spacing, first, nodes)
+
+    @property
+    def number_of_nodes(self) -> int:
+        """Stored nodes, extra nodes included."""
+        nodes = self.index.nodes
+        return nodes[0] * nodes[1] * nodes[2]
+
+    @property
+    def cell_volume(self) -> float:
+        """Volume of a cell."""
+        return self.spacing[0] * self.spacing[1] * self.spacing[2]
+
+    @property
+    def dimensions(self) -> int:
+        """The number of directions with more than one cell."""
+        return sum(n > 1 for n in self.cells)
+
+    @property
+    def upper(self) -> Vector:
+        """The corner of the bounding box opposite to the anchor."""
+        a, h, n = self.anchor, self.spacing, self.cells
+        return (a[0] + n[0] * h[0], a[1] + n[1] * h[1], a[2] + n[2] * h[2])
+
+    def has_neighbor(self, patch: Patch, face: str) -> bool:
+        """Whether another patch (or a periodic image) lies across a face of a patch, even in part."""
+        axis, plus = FACES.index(face) // 2, face.endswith("+")
+        if self.periodic[axis] and (patch.high[axis] == self.cells[axis] if plus else patch.low[axis] == 0):
+            return True
+        low, high = list(patch.low), list(patch.high)
+        low[axis] = patch.high[axis] if plus else patch.low[axis] - 1
+        high[axis] = low[axis] + 1
+        return any(
+            all(other.low[a] < high[a] and low[a] < other.high[a] for a in range(3)) for other in self.patches
+        )
+
+    def flat(self, i: Any, j: Any, k: Any) -> Any:
+        """Storage index of node (i, j, k); works on arrays."""
+        first, nodes = self.index.first, self.index.nodes
+        return (i - first[0]) + nodes[0] * ((j - first[1]) + nodes[1] * (k - first[2]))
+
+    def as_box(self, nodal: Array) -> Array:
+        """A view [i, j, k(, component)] of flat nodal values; [0, 0, 0] is the first stored node."""
+        nx, ny, nz = self.index.nodes
+        box = nodal.reshape((nz, ny, nx, *nodal.shape[1:]))
+        return box.transpose((2, 1, 0, *range(3, box.ndim)))
+
+    def node_positions(self) -> Array:
+        """Positions of all stored nodes in storage order, shape (nodes, 3)."""
+        axes = []
+        for axis in range(3):
+            first, count = self.index.first[axis], self.index.nodes[axis]
+            axes.append(self.anchor[axis] + (first + np.arange(count)) * self.spacing[axis])
+        z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
+        return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+
+    def cell_of(self, positions: Array) -> Array:
+        """Cell indices (n, 3) of positions (n, 3)."""
+        relative = (positions - np.array(self.anchor)) / np.array(self.spacing)
+        return np.floor(relative).astype(np.int64)

@@ -1,0 +1,60 @@
+"""Damage models: a scalar that follows plastic deformation, or failure by a criterion."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from typing import Annotated, Any, NamedTuple
+
+from numpy.typing import NDArray
+
+from solver.declare import family
+from solver.dispatch import generic
+from solver.materials.constitutive import Material, NoState, Step
+from solver.particles import Array, StateVariable
+from solver.tensor import Tensor
+
+DAMAGE = family(
+    "damage",
+    tag="damage_model",
+    package="solver.materials.damage",
+    key="@type",
+    meaning="how a material is damaged",
+)
+
+
+class DamagePoint(NamedTuple):
+    """A particle after its stress update."""
+
+    stress: Tensor
+    """Cauchy stress at the end of the step."""
+    deformation_gradient: Tensor
+    """At the end of the step."""
+    plastic_strain_rate: float
+    """Of the step; 0 for materials without plasticity."""
+    temperature: float
+    """At the start of the step."""
+    volume: float
+    localized: int
+    """Not 0 where the particle has failed."""
+
+
+class ScalarDamage(NamedTuple):
+    """The state of models with a scalar damage."""
+
+    damage: Annotated[Array, StateVariable("p.damage")]
+
+
+@generic
+def update_damage(model: Any, state: Any, p: int, point: DamagePoint, material: Material, step: Step) -> int:
+    """Update the damage of particle ``p`` in ``state``; returns its new failure state."""
+    raise NotImplementedError
+
+
+@singledispatch
+def initialize_damage(model: Any, state: Any, patch: NDArray[Any]) -> None:
+    """Set the initial damage of particles; ``patch`` holds the patch id of each, (n,)."""
+
+
+def damage_state(model: Any) -> type:
+    """The NamedTuple class of a damage model's state arrays (its attribute ``State``)."""
+    return getattr(model, "State", NoState)

@@ -1,0 +1,20 @@
+"""No damage."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from solver.declare import model
+from solver.dispatch import implements
+from solver.materials.constitutive import Material, Step
+from solver.materials.damage import DamagePoint, update_damage
+
+
+@model("damage", "none")
+class NoDamage(NamedTuple):
+    """The material is not damaged."""
+
+
+@implements(update_damage, NoDamage)
+def _(model: NoDamage, state: Any, p: int, point: DamagePoint, material: Material, step: Step) -> int:
+    return point.localized

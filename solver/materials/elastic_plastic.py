@@ -1,0 +1,496 @@
+"""Elastic-plastic metals: hypoelastic stress, an equation of state and interchangeable plasticity."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+
+from solver.declare import Parameter, SubModel, model
+from solver.dispatch import implements, inline
+from solver.materials.constitutive import (
+    DELETE,
+    Material,
+    Point,
+    Step,
+    StressUpdate,
+    artificial_viscosity,
+    initial_sound_speed,
+    initialize,
+    stress_update,
+)
+from solver.materials.damage.no_damage import NoDamage
+from solver.materials.deviatoric_stress import relax, stress_increment
+from solver.materials.deviatoric_stress.hypo_elastic import HypoElasticDeviator
+from solver.materials.distribution import draw
+from solver.materials.distribution.constant import Constant
+from solver.materials.equation_of_state import isentropic_heating, mean_stress
+from solver.materials.equation_of_state.default_hyper import DefaultHyper
+from solver.materials.flow_stress import flow_stress, hardening_slope
+from solver.materials.melting import melting_temperature
+from solver.materials.melting.constant_melting import ConstantMelting
+from solver.materials.plasticity_state import PlasticityState, at_plastic_strain, with_thermal_properties
+from solver.materials.return_algorithm import PlasticReturn, PlasticTrial, return_to_yield
+from solver.materials.return_algorithm.radial_return import RadialReturn
+from solver.materials.shear_modulus import shear_modulus
+from solver.materials.shear_modulus.constant_shear import ConstantShear
+from solver.materials.specific_heat import specific_heat
+from solver.materials.specific_heat.constant_specific_heat import ConstantSpecificHeat
+from solver.materials.stability import is_checked, localizes, tangent_modulus
+from solver.materials.stability.no_check import NoCheck
+from solver.materials.yield_condition import hardening_term, yield_normal, yield_value
+from solver.particles import Array, Particles, StateVariable
+from solver.tensor import (
+    Tensor,
+    determinant,
+    deviator,
+    double_dot,
+    isotropic,
+    norm,
+    principal_values,
+    put_tensor,
+    rotation,
+    symmetric,
+    tensor_at,
+    trace,
+)
+
+LARGEST_EXPANSION = 1.0e5
+"""A particle whose volume grew by more than this factor is removed."""
+
+
+class ElasticPlasticState(NamedTuple):
+    """What an elastic-plastic particle remembers; Maxwell elements, if any, follow as more fields."""
+
+    rotation: Annotated[Array, StateVariable("p.rotation", "Matrix3", 1.0)]
+    """R of the polar decomposition of the deformation gradient."""
+    strain_rate: Annotated[Array, StateVariable("p.strainRate")]
+    plastic_strain: Annotated[Array, StateVariable("p.plasticStrain")]
+    plastic_strain_rate: Annotated[Array, StateVariable("p.plasticStrainRate")]
+    porosity: Annotated[Array, StateVariable("p.porosity")]
+    energy: Annotated[Array, StateVariable("p.energy")]
+    """Specific internal energy, J/kg."""
+    alpha: Annotated[Array, StateVariable("p.alpha")]
+    """Sum of sqrt(2/3) times the plastic multipliers."""
+
+
+OWN_FIELDS = len(ElasticPlasticState._fields)
+
+
+@model("constitutive_model", "elastic_plastic", "elastic_plastic_hp", old_names=("hypoelastic_plastic",))
+class ElasticPlastic(NamedTuple):
+    """Hypoelastic-plastic metal of which every part can be exchanged (Banerjee 2012, section 3).
+
+    The rate of deformation and the stress are turned into the frame of the material by R of F = R U. There
+    the deviator follows s' = 2 mu (dev(d) - d_p) with plastic flow on the yield surface, the mean stress an
+    equation of state. Plastic work, change of volume and artificial viscosity heat the particle.
+    """
+
+    bulk_modulus: Annotated[float, Parameter("bulk modulus", unit="Pa", gt=0.0)]
+    shear_modulus: Annotated[float, Parameter("shear modulus", unit="Pa", ge=0.0)]
+    flow_model: Annotated[Any, SubModel("flow_stress")]
+    yield_condition: Annotated[Any, SubModel("yield_condition")]
+    equation_of_state: Annotated[Any, SubModel("equation_of_state")] = DefaultHyper()
+    shear_modulus_model: Annotated[Any, SubModel("shear_modulus")] = ConstantShear()
+    melting_temp_model: Annotated[Any, SubModel("melting")] = ConstantMelting()
+    specific_heat_model: Annotated[Any, SubModel("specific_heat")] = ConstantSpecificHeat()
+    deviatoric_stress_model: Annotated[Any, SubModel("deviatoric_stress")] = HypoElasticDeviator()
+    stability_check: Annotated[Any, SubModel("stability")] = NoCheck()
+    damage_model: Annotated[Any, SubModel("damage")] = NoDamage()
+    """Where older decks give it; today's give it beside the constitutive model."""
+    plastic_convergence_algo: Annotated[Any, SubModel("return_algorithm")] = RadialReturn()
+    taylor_quinney_coeff: Annotated[
+        float, Parameter("part of the plastic work that becomes heat", ge=0.0, le=1.0)
+    ] = 0.9
+    isothermal: Annotated[bool, Parameter("whether the material's own heating is left out")] = False
+    compute_specific_heat: Annotated[
+        bool, Parameter("whether specific_heat_model is used instead of the material's specific_heat")
+    ] = False
+    do_melting: Annotated[bool, Parameter("whether shear stress vanishes above melting")] = True
+    evolve_porosity: Annotated[bool, Parameter("whether voids nucleate and grow")] = True
+    initial_mean_porosity: Annotated[float, Parameter("mean porosity at the start", ge=0.0, lt=1.0)] = 0.002
+    initial_std_porosity: Annotated[
+        float, Parameter("standard deviation of the porosity at the start", ge=0.0)
+    ] = 0.002
+    initial_porosity_distrib: Annotated[Any, SubModel("distribution")] = Constant()
+    critical_porosity: Annotated[float, Parameter("porosity at failure", gt=0.0, le=1.0)] = 0.5
+    frac_nucleation: Annotated[
+        float, Parameter("volume fraction of the particles at which voids nucleate", ge=0.0)
+    ] = 0.1
+    meanstrain_nucleation: Annotated[float, Parameter("mean plastic strain of nucleation")] = 0.3
+    stddevstrain_nucleation: Annotated[
+        float, Parameter("standard deviation of the plastic strain of nucleation", gt=0.0)
+    ] = 0.1
+    check_TEPLA_failure_criterion: Annotated[
+        bool, Parameter("whether a particle fails at the critical porosity")
+    ] = True
+    check_max_stress_failure: Annotated[
+        bool, Parameter("whether a particle fails at the critical stress")
+    ] = False
+    critical_stress: Annotated[float, Parameter("largest principal stress at failure", unit="Pa", gt=0.0)] = (
+        math.inf
+    )
+    tolerance: Annotated[
+        float, Parameter("tolerance of the flow stress", ignored="no flow model of Uintah's uses it")
+    ] = 1.0e-10
+    initial_material_temperature: Annotated[
+        float,
+        Parameter(
+            "temperature of the reference state",
+            unit="K",
+            ignored="internal energy is integrated, not derived from temperature",
+        ),
+    ] = 294.0
+    coeff_thermal_expansion: Annotated[
+        float,
+        Parameter("linear thermal expansion", unit="1/K", ignored="only the implicit integrator has it"),
+    ] = 0.0
+    useModifiedEOS: Annotated[
+        bool,
+        Parameter(
+            "a power law instead of the bulk modulus in expansion, beside a gas",
+            ignored="only the coupled gas-solid method asks the material for its density at a pressure",
+        ),
+    ] = False
+    evolve_damage: Annotated[
+        bool, Parameter("whether damage evolves", ignored="it does where there is a damage_model")
+    ] = True
+    failure_is_checked: bool = False
+    """Whether the material has an erosion algorithm, without which particles do not fail."""
+
+    @property
+    def State(self) -> type:  # noqa: N802 - the class attribute of other models
+        """The arrays of a particle set, with those of the Maxwell elements."""
+        return state_class(len(getattr(self.deviatoric_stress_model, "tau", ())))
+
+
+@cache
+def state_class(elements: int) -> type:
+    """The state of a model with that many Maxwell elements."""
+    if elements == 0:
+        return ElasticPlasticState
+    fields = [(name, ElasticPlasticState.__annotations__[name]) for name in ElasticPlasticState._fields]
+    fields += [
+        (f"element_{i}", Annotated[Array, StateVariable(f"sigmaDev{i}", "Matrix3")]) for i in range(elements)
+    ]
+    record = NamedTuple(f"ElasticPlasticState{elements}", fields)  # type: ignore[misc]  # made for a number
+    record.__module__ = __name__
+    return record
+
+
+def __getattr__(name: str) -> type:
+    """State classes by name, so that compiled kernels that were kept on disk find them again."""
+    number = name.removeprefix("ElasticPlasticState")
+    if number != name and number.isdecimal():
+        return state_class(int(number))
+    raise AttributeError(f"module {__name__} has no attribute {name}")
+
+
+@initial_sound_speed.register
+def _(model: ElasticPlastic, density: Any, temperature: Any) -> Any:
+    return np.sqrt((model.bulk_modulus + 4.0 * model.shear_modulus / 3.0) / density)
+
+
+@initialize.register
+def _(model: ElasticPlastic, state: Any, particles: Particles, material: Material, patch: Any) -> None:
+    left, _, right = np.linalg.svd(particles.deformation_gradient)
+    state.rotation[:] = left @ right
+    state.porosity[:] = draw(
+        model.initial_porosity_distrib, model.initial_mean_porosity, model.initial_std_porosity, patch
+    )
+
+
+class Kinematics(NamedTuple):
+    """Deformation of a particle in a step, in the frame of the material."""
+
+    old_rotation: Tensor
+    rotation: Tensor
+    rate: Tensor
+    """Rate of deformation."""
+    rate_deviator: Tensor
+    dilatation_rate: float
+    density: float
+    """At the end of the step."""
+
+
+class Flow(NamedTuple):
+    """Deviatoric part of a stress update, in the frame of the material."""
+
+    stress_deviator: Tensor
+    plastic: bool
+    melted: bool
+    plastic_strain: float
+    plastic_strain_rate: float
+    flow_stress: float
+    multiplier: float
+    plastic_increment: Tensor
+
+
+@implements(stress_update, ElasticPlastic)
+def elastic_plastic_stress(
+    model: ElasticPlastic, state: Any, p: int, point: Point, material: Material, step: Step
+) -> StressUpdate:
+    """Stress, heating, internal energy and failure of one particle, in Uintah's order of operations."""
+    J = determinant(point.deformation_gradient)
+    if not (0.0 < J <= LARGEST_EXPANSION):
+        return StressUpdate(isotropic(0.0), 0.0, 0.0, 0.0, 0.0, DELETE)
+    motion = kinematics(point, tensor_at(state.rotation, p), material.density / J)
+    old_stress = motion.old_rotation.T @ (point.stress @ motion.old_rotation)
+    start = plasticity_state(model, state, p, point, material, motion, trace(old_stress) / 3.0)
+    flow = deviatoric_flow(model, state, p, start, motion, old_stress, step.dt)
+    dissipation = 0.0
+    if not flow.melted:
+        elastic_rate = motion.rate_deviator - flow.plastic_increment / step.dt
+        dissipation = relax(
+            model.deviatoric_stress_model,
+            state[OWN_FIELDS:],
+            p,
+            motion.old_rotation,
+            motion.rotation,
+            elastic_rate,
+            step.dt,
+        )
+    pressure = mean_stress(model.equation_of_state, start, motion.dilatation_rate * step.dt)
+    stress = flow.stress_deviator + isotropic(pressure)
+    viscous = artificial_viscosity(
+        step, motion.dilatation_rate, math.sqrt(model.bulk_modulus / motion.density), motion.density
+    )
+    porosity = grown_porosity(model, state.porosity[p], flow, motion, step.dt)
+    localized = point.localized
+    if model.failure_is_checked:
+        if localized == 0 and fails(model, start, flow, stress, motion, porosity):
+            localized = 1
+        if localized != 0:
+            porosity = 0.0
+    laboratory_stress = motion.rotation @ stress @ motion.rotation.T
+    work = 0.0
+    if localized == 0:
+        work = internal_work(point, motion, laboratory_stress, step.dt)
+        if step.viscosity_heating:
+            work_of_viscosity = viscous * (point.volume - point.volume_old) / point.mass
+            state.energy[p] += work / point.mass - work_of_viscosity
+        else:
+            state.energy[p] += work / point.mass
+    put_tensor(state.rotation, p, motion.rotation)
+    state.strain_rate[p] = start.strain_rate
+    state.plastic_strain[p] = flow.plastic_strain
+    state.plastic_strain_rate[p] = flow.plastic_strain_rate
+    state.alpha[p] += math.sqrt(2.0 / 3.0) * flow.multiplier
+    state.porosity[p] = porosity
+    return StressUpdate(
+        stress=laboratory_stress,
+        sound_speed=math.sqrt((model.bulk_modulus + 4.0 * start.shear_modulus / 3.0) / motion.density),
+        strain_energy=work,
+        heating_rate=heating(model, start, flow, motion, dissipation, viscous, step),
+        artificial_pressure=viscous,
+        localized=localized,
+    )
+
+
+@inline
+def kinematics(point: Point, old_rotation: Tensor, density: float) -> Kinematics:
+    """Rate of deformation in the frame that R of the old deformation gradient turns with."""
+    rate = old_rotation.T @ (symmetric(point.velocity_gradient) @ old_rotation)
+    return Kinematics(
+        old_rotation, rotation(point.deformation_gradient), rate, deviator(rate), trace(rate), density
+    )
+
+
+@inline
+def plasticity_state(
+    model: ElasticPlastic,
+    state: Any,
+    p: int,
+    point: Point,
+    material: Material,
+    motion: Kinematics,
+    old_mean_stress: float,
+) -> PlasticityState:
+    """State of the particle from its history and the new density, with properties at its temperature."""
+    constant = PlasticityState(
+        plastic_strain=state.plastic_strain[p],
+        plastic_strain_rate=state.plastic_strain_rate[p],
+        strain_rate=math.sqrt(2.0 / 3.0) * norm(motion.rate),
+        temperature=point.temperature,
+        mean_stress=old_mean_stress,
+        density=motion.density,
+        initial_density=material.density,
+        energy=state.energy[p],
+        bulk_modulus=model.bulk_modulus,
+        shear_modulus=model.shear_modulus,
+        melt_temperature=material.melt_temperature,
+        specific_heat=material.specific_heat,
+    )
+    heat = constant.specific_heat
+    if model.compute_specific_heat:
+        heat = specific_heat(model.specific_heat_model, constant)
+    melt = melting_temperature(model.melting_temp_model, constant)
+    at_melt = with_thermal_properties(constant, heat, melt, model.shear_modulus)
+    return with_thermal_properties(at_melt, heat, melt, shear_modulus(model.shear_modulus_model, at_melt))
+
+
+@inline
+def deviatoric_flow(
+    model: ElasticPlastic,
+    state: Any,
+    p: int,
+    start: PlasticityState,
+    motion: Kinematics,
+    old_stress: Tensor,
+    dt: float,
+) -> Flow:
+    """Deviatoric stress: none when melted, the trial inside the yield surface, else on the surface.
+
+    The yield surface is that of the plastic strain which the old plastic strain rate leads to.
+    """
+    zero = isotropic(0.0)
+    if model.do_melting and start.temperature > start.melt_temperature:
+        return Flow(zero, False, True, start.plastic_strain, 0.0, 0.0, 0.0, zero)
+    trial = deviator(old_stress) + stress_increment(
+        model.deviatoric_stress_model,
+        state[OWN_FIELDS:],
+        p,
+        motion.old_rotation,
+        motion.rate_deviator,
+        start.shear_modulus,
+        dt,
+    )
+    expected_strain = start.plastic_strain + start.plastic_strain_rate * dt
+    expected = at_plastic_strain(start, expected_strain, start.plastic_strain_rate)
+    sigma_y = flow_stress(model.flow_model, expected)
+    stress_trace = 3.0 * start.mean_stress + motion.dilatation_rate * (2.0 * start.shear_modulus * dt)
+    porosity = state.porosity[p]
+    equivalent = math.sqrt(1.5) * norm(trial)
+    surface = yield_value(model.yield_condition, equivalent, stress_trace, sigma_y, porosity)
+    if surface.function < 0.0:
+        return Flow(trial, False, False, start.plastic_strain, 0.0, sigma_y, 0.0, zero)
+    plastic_trial = PlasticTrial(
+        old_stress,
+        trial,
+        motion.rate_deviator,
+        state.strain_rate[p],
+        sigma_y,
+        surface.strength,
+        porosity,
+    )
+    end = return_to_yield(model.plastic_convergence_algo, model.flow_model, start, plastic_trial, dt)
+    return plastic_flow(end)
+
+
+@inline
+def plastic_flow(end: PlasticReturn) -> Flow:
+    """The answer of a return algorithm as the flow of a step."""
+    return Flow(
+        end.stress_deviator,
+        True,
+        False,
+        end.plastic_strain,
+        end.plastic_strain_rate,
+        end.flow_stress,
+        end.multiplier,
+        end.plastic_increment,
+    )
+
+
+@inline
+def heating(
+    model: ElasticPlastic,
+    start: PlasticityState,
+    flow: Flow,
+    motion: Kinematics,
+    dissipation: float,
+    viscous_pressure: float,
+    step: Step,
+) -> float:
+    """Rate of temperature by change of volume, viscous and plastic work, K/s (Banerjee 2012, Eq. 65)."""
+    if model.isothermal:
+        return 0.0
+    to_heat = model.taylor_quinney_coeff / (motion.density * start.specific_heat)
+    rate = isentropic_heating(model.equation_of_state, start, motion.dilatation_rate) + to_heat * dissipation
+    if step.viscosity_heating:
+        rate -= viscous_pressure * motion.dilatation_rate / motion.density / start.specific_heat
+    if flow.plastic:
+        rate += to_heat * flow.flow_stress * flow.plastic_strain_rate
+    return rate
+
+
+@inline
+def nucleation(model: ElasticPlastic, plastic_strain: float) -> float:
+    """Porosity that nucleates per unit of plastic strain (Chu and Needleman 1980)."""
+    z = (plastic_strain - model.meanstrain_nucleation) / model.stddevstrain_nucleation
+    density = math.exp(-0.5 * z * z) / (model.stddevstrain_nucleation * math.sqrt(2.0 * math.pi))
+    return model.frac_nucleation * density
+
+
+@inline
+def grown_porosity(
+    model: ElasticPlastic, porosity: float, flow: Flow, motion: Kinematics, dt: float
+) -> float:
+    """Porosity after a plastic step: growth (1 - f) tr(d) in expansion and nucleation by shear."""
+    if not (flow.plastic and model.evolve_porosity):
+        return porosity
+    growth = (1.0 - porosity) * max(0.0, motion.dilatation_rate)
+    shear_rate = norm(motion.rate_deviator) / math.sqrt(1.5)
+    return porosity + dt * (nucleation(model, flow.plastic_strain) * shear_rate + growth)
+
+
+@inline
+def fails(
+    model: ElasticPlastic,
+    start: PlasticityState,
+    flow: Flow,
+    stress: Tensor,
+    motion: Kinematics,
+    porosity: float,
+) -> bool:
+    """Whether a particle melts, reaches the critical stress or porosity, or deforms unstably.
+
+    The porosity criterion is TEPLA-F without its damage term (Johnson and Addessio 1988): f^2 / f_c^2 > 1.
+    """
+    if flow.melted:
+        return True
+    if model.check_max_stress_failure and principal_values(stress).first > model.critical_stress:
+        return True
+    if not flow.plastic:
+        return False
+    if model.check_TEPLA_failure_criterion and porosity > model.critical_porosity:
+        return True
+    return is_checked(model.stability_check) and is_unstable(model, start, flow, stress, motion, porosity)
+
+
+@inline
+def is_unstable(
+    model: ElasticPlastic,
+    start: PlasticityState,
+    flow: Flow,
+    stress: Tensor,
+    motion: Kinematics,
+    porosity: float,
+) -> bool:
+    """Whether the stability check finds localization with the tangent at the end of the step."""
+    end = at_plastic_strain(start, flow.plastic_strain, flow.plastic_strain_rate)
+    sigma_y = flow_stress(model.flow_model, end)
+    if not sigma_y > 0.0:
+        return True
+    normal = yield_normal(model.yield_condition, stress, sigma_y, porosity)
+    hardening = hardening_term(
+        model.yield_condition,
+        stress,
+        normal,
+        sigma_y,
+        hardening_slope(model.flow_model, end),
+        porosity,
+        nucleation(model, flow.plastic_strain),
+    )
+    tangent = tangent_modulus(model.bulk_modulus, start.shear_modulus, normal, hardening)
+    return localizes(model.stability_check, stress, motion.rate, tangent)
+
+
+@inline
+def internal_work(point: Point, motion: Kinematics, stress: Tensor, dt: float) -> float:
+    """Work of the stress in the step, J: mean stress times rate times mean volume."""
+    rate = motion.rotation @ motion.rate @ motion.rotation.T
+    mean = 0.5 * (stress + point.stress)
+    return double_dot(rate, mean) * 0.5 * (point.volume + point.volume_old) * dt

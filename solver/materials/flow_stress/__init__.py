@@ -1,0 +1,36 @@
+"""Flow stress of metals and polymers as a function of plastic strain, rate and temperature."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from solver.declare import family
+from solver.dispatch import generic
+from solver.materials.plasticity_state import PlasticityState
+
+FLOW_STRESS = family(
+    "flow_stress",
+    tag="flow_model",
+    package="solver.materials.flow_stress",
+    key="@type",
+    meaning="flow stress as a function of plastic strain, rate and temperature",
+    old_tags=("plasticity_model",),
+)
+
+
+@generic
+def flow_stress(model: Any, state: PlasticityState) -> float:
+    """Stress at which the material flows in uniaxial loading."""
+    raise NotImplementedError
+
+
+@generic
+def hardening_slope(model: Any, state: PlasticityState) -> float:
+    """Derivative of the flow stress by the plastic strain."""
+    raise NotImplementedError
+
+
+@generic
+def rate_slope(model: Any, state: PlasticityState) -> float:
+    """Derivative of the flow stress by the strain rate, as the Newton iteration of the return uses it."""
+    raise NotImplementedError

@@ -1,0 +1,76 @@
+"""The flow stress of Johnson and Cook."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from solver.declare import Parameter, model
+from solver.dispatch import implements, inline
+from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
+from solver.materials.plasticity_state import PlasticityState
+
+
+@model("flow_stress", "johnson_cook")
+class JohnsonCook(NamedTuple):
+    """Johnson and Cook (1983): sigma = (A + B ep^n) (1 + C ln r) (1 - T*^m).
+
+    r is the strain rate divided by ``epdot_0`` and T* = (T - T_r) / (T_m - T_r). Below the reference rate the
+    middle factor is (1 + r)^C, below the reference temperature the last one is 1 - T*, above ``T_m`` it is 0.
+    As in Uintah the rate is that of the whole deformation, and ``T_m`` is this model's own: the melting
+    temperature model decides only whether a particle melts.
+    """
+
+    A: Annotated[float, Parameter("yield stress at the reference rate and temperature", unit="Pa", ge=0.0)]
+    B: Annotated[float, Parameter("strain hardening coefficient", unit="Pa", ge=0.0)]
+    C: Annotated[float, Parameter("strain rate coefficient", ge=0.0)]
+    n: Annotated[float, Parameter("strain hardening exponent", ge=0.0)]
+    m: Annotated[float, Parameter("thermal softening exponent", gt=0.0)]
+    epdot_0: Annotated[float, Parameter("reference strain rate", unit="1/s", gt=0.0)] = 1.0
+    T_r: Annotated[float, Parameter("reference temperature", unit="K", ge=0.0)] = 298.0
+    T_m: Annotated[float, Parameter("melting temperature", unit="K", gt=0.0)] = 1793.0
+
+
+@inline
+def rate_factor(model: JohnsonCook, strain_rate: float) -> float:
+    """The factor by which the strain rate raises the flow stress."""
+    r = strain_rate / model.epdot_0
+    if r < 1.0:
+        return (1.0 + r) ** model.C
+    return 1.0 + model.C * math.log(r)
+
+
+@inline
+def thermal_factor(model: JohnsonCook, temperature: float) -> float:
+    """The factor by which temperature lowers the flow stress."""
+    if temperature > model.T_m:
+        return 0.0
+    homologous = (temperature - model.T_r) / (model.T_m - model.T_r)
+    if homologous < 0.0:
+        return 1.0 - homologous
+    return 1.0 - homologous**model.m
+
+
+@implements(flow_stress, JohnsonCook)
+def _(model: JohnsonCook, state: PlasticityState) -> float:
+    hardened = model.A + model.B * state.plastic_strain**model.n
+    return hardened * rate_factor(model, state.strain_rate) * thermal_factor(model, state.temperature)
+
+
+@implements(hardening_slope, JohnsonCook)
+def _(model: JohnsonCook, state: PlasticityState) -> float:
+    if state.plastic_strain <= 0.0:
+        return 0.0
+    factors = rate_factor(model, state.strain_rate) * thermal_factor(model, state.temperature)
+    return model.B * model.n * factors * state.plastic_strain ** (model.n - 1.0)
+
+
+@implements(rate_slope, JohnsonCook)
+def _(model: JohnsonCook, state: PlasticityState) -> float:
+    """Slope by r, the rate in units of ``epdot_0``."""
+    hardened = model.A + model.B * state.plastic_strain**model.n
+    base = hardened * thermal_factor(model, state.temperature)
+    r = state.strain_rate / model.epdot_0
+    if r < 1.0:
+        return base * model.C * (1.0 + r) ** (model.C - 1.0)
+    return base * model.C / r

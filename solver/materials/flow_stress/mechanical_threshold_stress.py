@@ -1,0 +1,204 @@
+"""The mechanical threshold stress model."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from solver.declare import Parameter, model
+from solver.dispatch import implements, inline
+from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
+from solver.materials.plasticity_state import PlasticityState
+
+LEAST_RATE = 1.0e-7
+"""Takes the place of a strain rate of zero, 1/s."""
+SUBSTEPS = 4
+"""Steps of the midpoint rule for the threshold stress."""
+STRESS_TOLERANCE = 1.0
+"""Residual of Newton's iteration for the threshold stress, Pa."""
+MOST_ITERATIONS = 100
+
+
+@model("flow_stress", "mts_model")
+class MechanicalThresholdStress(NamedTuple):
+    """Follansbee and Kocks (1988), Acta Metall. 36, 81; Goto et al. (2000), Scripta Mater. 42, 1125.
+
+    sigma = sigma_a + (S_i sigma_i + S_e sigma_e) mu / mu_0, with the scaling factors
+    S = (1 - (k T / (g_0 b^3 mu) ln(edot_0 / r))^(1/q))^(1/p) at the rate r of the whole deformation. The
+    threshold stress sigma_e hardens by Voce's law d sigma_e / d ep = theta_0 (1 - F) + theta_IV F,
+    F = tanh(alpha sigma_e / sigma_es) / tanh(alpha), theta_0 = a_0 + a_1 ln r + a_2 sqrt(r) - a_3 T, towards
+    sigma_es = sigma_es0 (r / edot_es0)^(k T / (g_0es b^3 mu)), at the present rate and temperature from zero
+    strain on, by the midpoint rule in four steps. As in Uintah theta_IV enters the slope alone. Above the
+    phase transition at T_c six constants change (steels).
+    """
+
+    sigma_a: Annotated[float, Parameter("athermal stress", unit="Pa", ge=0.0)]
+    mu_0: Annotated[float, Parameter("shear modulus at 0 K", unit="Pa", gt=0.0)]
+    D: Annotated[
+        float,
+        Parameter("constant of the shear modulus", unit="Pa", ignored="shear_modulus_model has its own"),
+    ]
+    T_0: Annotated[
+        float, Parameter("constant of the shear modulus", unit="K", ignored="shear_modulus_model has its own")
+    ]
+    koverbcubed: Annotated[float, Parameter("Boltzmann's constant / b^3", unit="Pa/K", gt=0.0)]
+    g_0i: Annotated[float, Parameter("normalized activation energy of intrinsic barriers", ge=0.0)]
+    g_0e: Annotated[float, Parameter("normalized activation energy of evolving barriers", gt=0.0)]
+    edot_0i: Annotated[float, Parameter("reference rate of intrinsic barriers", unit="1/s", ge=0.0)]
+    edot_0e: Annotated[float, Parameter("reference rate of evolving barriers", unit="1/s", gt=0.0)]
+    p_i: Annotated[float, Parameter("exponent p of intrinsic barriers; none if 0", ge=0.0)]
+    q_i: Annotated[float, Parameter("exponent q of intrinsic barriers", ge=0.0)]
+    p_e: Annotated[float, Parameter("exponent p of evolving barriers", gt=0.0)]
+    q_e: Annotated[float, Parameter("exponent q of evolving barriers", gt=0.0)]
+    sigma_i: Annotated[float, Parameter("stress of intrinsic barriers", unit="Pa", ge=0.0)]
+    a_0: Annotated[float, Parameter("initial hardening rate", unit="Pa")]
+    a_1: Annotated[float, Parameter("logarithmic rate coefficient of hardening", unit="Pa")]
+    a_2: Annotated[float, Parameter("square-root rate coefficient of hardening", unit="Pa sqrt(s)")]
+    a_3: Annotated[float, Parameter("thermal coefficient of hardening", unit="Pa/K")]
+    theta_IV: Annotated[float, Parameter("hardening rate of stage IV", unit="Pa")]
+    alpha: Annotated[float, Parameter("shape of the hardening law", gt=0.0)]
+    edot_es0: Annotated[float, Parameter("reference rate of saturation", unit="1/s", gt=0.0)]
+    g_0es: Annotated[float, Parameter("normalized activation energy of saturation", gt=0.0)]
+    sigma_es0: Annotated[float, Parameter("saturation stress at 0 K", unit="Pa", gt=0.0)]
+    T_c: Annotated[float, Parameter("temperature of the phase transition", unit="K", gt=0.0)] = 10400.0
+    g_0i_c: Annotated[float, Parameter("g_0i above T_c", gt=0.0)] = 0.57582
+    sigma_i_c: Annotated[float, Parameter("sigma_i above T_c", unit="Pa", ge=0.0)] = 896.14e6
+    g_0es_c: Annotated[float, Parameter("g_0es above T_c", gt=0.0)] = 0.294
+    sigma_es0_c: Annotated[float, Parameter("sigma_es0 above T_c", unit="Pa", gt=0.0)] = 478.36e6
+    a_0_c: Annotated[float, Parameter("a_0 above T_c", unit="Pa")] = 7.5159e9
+    a_3_c: Annotated[float, Parameter("a_3 above T_c", unit="Pa/K")] = 3.7796e6
+
+
+class Phase(NamedTuple):
+    """The constants that change at the phase transition."""
+
+    g_0i: float
+    sigma_i: float
+    g_0es: float
+    sigma_es0: float
+    a_0: float
+    a_3: float
+
+
+@inline
+def phase(model: MechanicalThresholdStress, temperature: float) -> Phase:
+    """The constants at a temperature."""
+    if temperature > model.T_c:
+        return Phase(
+            model.g_0i_c, model.sigma_i_c, model.g_0es_c, model.sigma_es0_c, model.a_0_c, model.a_3_c
+        )
+    return Phase(model.g_0i, model.sigma_i, model.g_0es, model.sigma_es0, model.a_0, model.a_3)
+
+
+@inline
+def rate_of(state: PlasticityState) -> float:
+    """The strain rate that the model works with, never zero."""
+    return state.strain_rate if state.strain_rate != 0.0 else LEAST_RATE
+
+
+@inline
+def activation(thermal_energy: float, reference_rate: float, rate: float, q: float) -> float:
+    """The activation term (k T / (g_0 b^3 mu) ln(reference / rate))^(1/q); none above the reference rate."""
+    return max(thermal_energy * math.log(reference_rate / rate), 0.0) ** (1.0 / q)
+
+
+@inline
+def scaling(activated: float, p: float) -> float:
+    """The scaling factor S = (1 - activation)^(1/p), zero where heat alone overcomes the barriers."""
+    if activated >= 1.0:
+        return 0.0
+    return (1.0 - activated) ** (1.0 / p)
+
+
+class Hardening(NamedTuple):
+    """Where the threshold stress stands."""
+
+    initial_rate: float
+    """theta_0."""
+    saturation: float
+    """sigma_es."""
+    threshold: float
+    """sigma_e."""
+
+
+@inline
+def threshold_stress(
+    model: MechanicalThresholdStress, initial_rate: float, saturation: float, strain: float
+) -> float:
+    """sigma_e after a plastic strain, by the midpoint rule with Newton's iteration in each step."""
+    threshold = 0.0
+    growth = strain / SUBSTEPS * initial_rate
+    back = growth / math.tanh(model.alpha)
+    sharpness = 0.5 * model.alpha / saturation
+    for _ in range(SUBSTEPS):
+        start = threshold
+        for _ in range(MOST_ITERATIONS):
+            bend = math.tanh(sharpness * (start + threshold))
+            residual = threshold + back * bend - start - growth
+            threshold = abs(threshold - residual / (1.0 + back * sharpness * (1.0 - bend * bend)))
+            if abs(residual) <= STRESS_TOLERANCE:
+                break
+        if threshold > saturation:
+            return saturation
+    return threshold
+
+
+@inline
+def hardening_state(model: MechanicalThresholdStress, state: PlasticityState, constants: Phase) -> Hardening:
+    """Initial hardening rate, which is never negative, saturation and threshold stress at a state."""
+    rate = rate_of(state)
+    T = state.temperature
+    rate_part = model.a_1 * math.log(rate) + model.a_2 * math.sqrt(rate)
+    initial_rate = max(constants.a_0 + rate_part - constants.a_3 * T, 0.0)
+    power = model.koverbcubed * T / state.shear_modulus / constants.g_0es
+    saturation = constants.sigma_es0 * (rate / model.edot_es0) ** power
+    return Hardening(
+        initial_rate, saturation, threshold_stress(model, initial_rate, saturation, state.plastic_strain)
+    )
+
+
+@implements(flow_stress, MechanicalThresholdStress)
+def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
+    rate = rate_of(state)
+    constants = phase(model, state.temperature)
+    energy = model.koverbcubed * state.temperature / state.shear_modulus
+    evolving = scaling(activation(energy / model.g_0e, model.edot_0e, rate, model.q_e), model.p_e)
+    stress = evolving * hardening_state(model, state, constants).threshold
+    if model.p_i > 0.0:
+        activated = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
+        stress += scaling(activated, model.p_i) * constants.sigma_i
+    return model.sigma_a + stress * (state.shear_modulus / model.mu_0)
+
+
+@implements(hardening_slope, MechanicalThresholdStress)
+def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
+    energy = model.koverbcubed * state.temperature / state.shear_modulus
+    activated = activation(energy / model.g_0e, model.edot_0e, rate_of(state), model.q_e)
+    hardening = hardening_state(model, state, phase(model, state.temperature))
+    F = math.tanh(model.alpha * (hardening.threshold / hardening.saturation)) / math.tanh(model.alpha)
+    voce = hardening.initial_rate * (1.0 - F) + model.theta_IV * F
+    return state.shear_modulus / model.mu_0 * scaling(activated, model.p_e) * voce
+
+
+@inline
+def scaling_slope(activated: float, p: float, q: float, reference_rate: float, rate: float) -> float:
+    """Derivative of the scaling factor by the strain rate."""
+    if activated <= 0.0 or activated >= 1.0:
+        return 0.0
+    chain = activated / (p * q * rate * math.log(reference_rate / rate))
+    return chain * (1.0 - activated) ** (1.0 / p - 1.0)
+
+
+@implements(rate_slope, MechanicalThresholdStress)
+def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
+    """Slope with the threshold stress held."""
+    rate = rate_of(state)
+    constants = phase(model, state.temperature)
+    energy = model.koverbcubed * state.temperature / state.shear_modulus
+    activated = activation(energy / model.g_0e, model.edot_0e, rate, model.q_e)
+    threshold = hardening_state(model, state, constants).threshold
+    slope = threshold * scaling_slope(activated, model.p_e, model.q_e, model.edot_0e, rate)
+    if model.p_i > 0.0:
+        activated = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
+        slope += constants.sigma_i * scaling_slope(activated, model.p_i, model.q_i, model.edot_0i, rate)
+    return slope * (state.shear_modulus / model.mu_0)

@@ -1,0 +1,495 @@
+"""The explicit material point method: bodies on a grid, and the time step.
+
+The order of operations is Uintah's (see docs/architecture.md, "The step"). Reading and writing, progress and
+restarts are the caller's: a simulation knows nothing of them.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver import kernels
+from solver.boundary_conditions import BoundaryConditions
+from solver.contact.law import ContactLaw, ContactScene
+from solver.flags import Flags
+from solver.grid import FACES, Grid
+from solver.kernels import CHANNELS, Kinematics, Transfer
+from solver.materials.constitutive import Material, Step, initial_sound_speed, time_step_limit
+from solver.nodal import NodalFields, new_nodal_fields
+from solver.particles import Particles, keep
+
+Array = NDArray[Any]
+
+
+class DivergedError(RuntimeError):
+    """A value that is not a finite number turned up; the message names the material and the step."""
+
+
+@dataclass
+class Body:
+    """The particles of one material of a deck, with all that acts on them alone.
+
+    Attributes
+    ----------
+    index : material index in the deck.
+    name : the material's name in the deck, or its constitutive model's.
+    material : constants.
+    model : the constitutive model's record.
+    state : the model's own arrays.
+    particles : the particles.
+    rigid : moves as contact tells it and carries no stress.
+    transmits_force : feels no acceleration of its own (Uintah's force-transmitting material).
+    activation_time : before this time the body neither weighs nor pushes.
+    is_active : False keeps it out for good.
+    possible_alpha : whether contact may take its surface for the one that separates it from the others.
+    """
+
+    index: int
+    name: str
+    material: Material
+    model: Any
+    state: Any
+    particles: Particles
+    rigid: bool = False
+    transmits_force: bool = False
+    activation_time: float = 0.0
+    is_active: bool = True
+    possible_alpha: bool = True
+
+    def keep(self, kept: Array) -> None:
+        """Drop the particles that a mask (n,) leaves out."""
+        self.particles = keep(self.particles, kept)
+        self.state = keep(self.state, kept)
+
+
+@dataclass
+class Simulation:
+    """Bodies, grid and everything that moves them; :meth:`advance` makes one time step.
+
+    Attributes
+    ----------
+    reductions : (label, material or -1) -> value of the last step, e.g. ("KineticEnergy", -1).
+    before_step : calls made at the start of each step with (simulation, dt), in order: external loads.
+    after_boundary_conditions : calls made once v* and a are known: prescribed motion.
+    after_step : calls made before particles are sorted out: inserted particles.
+    time_step_limits : functions of the time that bound the step from there.
+    spread_corner_loads : adds external forces by particle corners (CBDI), in place of particle weights.
+    """
+
+    grid: Grid
+    bodies: list[Body]
+    interpolator: Any
+    flags: Flags
+    gravity: tuple[float, float, float]
+    boundary_conditions: BoundaryConditions
+    contact_laws: Sequence[ContactLaw] = ()
+    thermal_contact: bool = False
+    before_step: list[Callable[[Simulation, float], None]] = field(default_factory=list)
+    after_boundary_conditions: list[Callable[[Simulation, float], None]] = field(default_factory=list)
+    after_step: list[Callable[[Simulation, float], None]] = field(default_factory=list)
+    time_step_limits: list[Callable[[float], float]] = field(default_factory=list)
+    spread_corner_loads: Callable[[Body, Array], None] | None = None
+    time: float = 0.0
+    step_number: int = 0
+    reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Make the arrays that live as long as the simulation, so that steps allocate nothing large."""
+        count = self.grid.number_of_nodes
+        self.nodal: NodalFields = new_nodal_fields(self.grid, len(self.bodies))
+        self._sums = np.zeros((count, CHANNELS))
+        self._temperature_star = np.zeros((len(self.bodies), count))
+        self._projected_temperature = np.zeros((len(self.bodies), count))
+        self._smoothed = np.zeros((count if self.flags.XPIC2 else 0, 3))
+        self._images = _periodic_images(self.grid)
+        self._owned_nodes = _owned_nodes(self.grid)
+        self._owned_cells = _owned_cells(self.grid)
+        self._weight = self.boundary_conditions.node_to_cell_weight()
+        self._kinematics = Kinematics(
+            self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
+        )
+        self._cell_stretch = np.zeros(len(self._owned_cells))
+        self._face_forces: dict[str, tuple[float, float, float]] = {}
+
+    # ---- the time step -------------------------------------------------------------------------------------
+
+    def initial_time_step(self) -> float:
+        """The stable first step, from the models' initial wave speeds."""
+        stable = min((self._initial_limit(body) for body in self.bodies), default=math.inf)
+        return self._bounded(stable)
+
+    def _bounded(self, stable: float) -> float:
+        return min([stable, *(limit(self.time) for limit in self.time_step_limits)])
+
+    def _initial_limit(self, body: Body) -> float:
+        particles = body.particles
+        speed = initial_sound_speed(body.model, particles.mass / particles.volume, particles.temperature)
+        waves = kernels.initial_wave_speed(particles.velocity, np.broadcast_to(speed, particles.mass.shape).copy())
+        return self._limit(body, waves)
+
+    def _limit(self, body: Body, wave_speed: tuple[float, float, float]) -> float:
+        crossing = min(h / w for h, w in zip(self.grid.spacing, wave_speed, strict=True))
+        return min(crossing, time_step_limit(body.model))
+
+    def advance(self, dt: float) -> float:
+        """Make one time step and return the stable size of the next.
+
+        Raises
+        ------
+        DivergedError
+            when a stress or position is no longer a finite number.
+        """
+        self.reductions.clear()
+        for action in self.before_step:
+            action(self, dt)
+        for m, body in enumerate(self.bodies):
+            self._project(m, body)
+        scene = self._scene(dt)
+        for law in self.contact_laws:
+            law.apply(1, scene)
+        self._record_traction()
+        self._symmetric_forces()
+        for m, body in enumerate(self.bodies):
+            self._accelerate(m, body, dt)
+        for law in self.contact_laws:
+            law.apply(2, scene)
+        self._impose_velocities(dt)
+        for action in self.after_boundary_conditions:
+            action(self, dt)
+        if self.flags.explicit_heat_conduction:
+            self._conduct_heat(dt)
+        self._share_images()
+        stable = math.inf
+        for m, body in enumerate(self.bodies):
+            cells = self._particle_cells(body)
+            self._move(m, body, dt)
+            stable = min(stable, self._update_stress(body, cells, dt))
+        self.reductions.update(scene.reductions)
+        for action in self.after_step:
+            action(self, dt)
+        for body in self.bodies:
+            self._settle(body)
+        self.time += dt
+        self.step_number += 1
+        return self._bounded(stable)
+
+    # ---- particles to grid ---------------------------------------------------------------------------------
+
+    def _transfer(self, body: Body) -> Transfer:
+        conducts = self.flags.explicit_heat_conduction
+        return Transfer(
+            axisymmetric=self.flags.axisymmetric,
+            gradient_enhanced=self.flags.gradient_enhanced_projection,
+            rigid=body.rigid,
+            spread_loads=self.spread_corner_loads is None,
+            conductivity=body.material.thermal_conductivity / body.material.specific_heat if conducts else 0.0,
+            specific_heat=body.material.specific_heat,
+        )
+
+    def _is_active(self, body: Body) -> bool:
+        return body.is_active and self.time >= body.activation_time
+
+    def _project(self, m: int, body: Body) -> None:
+        """Mass, velocity, forces and temperature of a body at the nodes, with the conditions on symmetry faces."""
+        nodal = self.nodal
+        if self._is_active(body):
+            kernels.particles_to_grid(
+                self.interpolator, self.grid.index, body.particles, self._transfer(body), self._sums
+            )
+        else:
+            self._sums[:] = 0.0
+        if len(self._images[0]):
+            kernels.fold_images(self._sums, *self._images)
+        kernels.normalise(
+            self._sums,
+            nodal.mass[m],
+            nodal.volume[m],
+            nodal.velocity[m],
+            nodal.internal_force[m],
+            nodal.external_force[m],
+            nodal.temperature[m],
+            nodal.heat[m],
+        )
+        if self.spread_corner_loads is not None:
+            self.spread_corner_loads(body, nodal.external_force[m])
+        self._projected_temperature[m] = nodal.temperature[m]
+        self.boundary_conditions.apply_temperature(nodal.temperature[m], m)
+        self.boundary_conditions.apply_symmetry(nodal.velocity[m], m)
+
+    def _share_images(self) -> None:
+        """Periodic directions: image nodes follow their owners, on which contact and conditions acted."""
+        if not len(self._images[0]):
+            return
+        nodal = self.nodal
+        for m in range(len(self.bodies)):
+            for vectors in (nodal.velocity[m], nodal.velocity_star[m], nodal.acceleration[m]):
+                kernels.copy_to_images(vectors, *self._images)
+            for scalars in (nodal.temperature_rate[m], self._temperature_star[m]):
+                kernels.copy_to_images(scalars.reshape(-1, 1), *self._images)
+
+    def _symmetric_forces(self) -> None:
+        for m, body in enumerate(self.bodies):
+            if not body.rigid:
+                self.boundary_conditions.apply_symmetry(self.nodal.internal_force[m], m)
+
+    def _scene(self, dt: float) -> ContactScene:
+        return ContactScene(
+            grid=self.grid,
+            nodal=self.nodal,
+            particles=[body.particles for body in self.bodies],
+            rigid=[body.rigid for body in self.bodies],
+            axisymmetric=self.flags.axisymmetric,
+            possible_alpha=[body.possible_alpha for body in self.bodies],
+            colinear_normals=self.flags.colinear_normals,
+            xpic2=self.flags.XPIC2,
+            interpolation=self.interpolator,
+            node_to_cell_weight=self._weight,
+            boundary_conditions=self.boundary_conditions,
+            owned_nodes=self._owned_nodes,
+            dt=dt,
+            time=self.time,
+            face_forces=dict(self._face_forces),
+        )
+
+    # ---- on the grid ---------------------------------------------------------------------------------------
+
+    def _accelerate(self, m: int, body: Body, dt: float) -> None:
+        nodal = self.nodal
+        kernels.accelerate(
+            nodal.mass[m],
+            nodal.internal_force[m],
+            nodal.external_force[m],
+            nodal.velocity[m],
+            nodal.acceleration[m],
+            nodal.velocity_star[m],
+            self.gravity,
+            self.flags.artificial_damping_coeff,
+            self.flags.minimum_mass_for_acc,
+            dt,
+        )
+        if body.transmits_force:
+            nodal.acceleration[m] = 0.0
+            nodal.velocity_star[m] = nodal.velocity[m]
+        self._add("TotalMass", body, float(nodal.mass[m].sum() - nodal.mass[m][self._images[1]].sum()))
+        force = nodal.external_force[m]
+        self._add("SumTransmittedForce", body, force.sum(axis=0) - force[self._images[1]].sum(axis=0))
+
+    def too_fast(self, dt: float) -> bool:
+        """Whether a node inside the domain would cross half a cell in the last step's dt."""
+        half = 0.25 * sum(h * h for h in self.grid.spacing)
+        inner = _inner_nodes(self.grid)
+        return any(kernels.fastest_node(v, inner) * dt * dt > half for v in self.nodal.velocity_star)
+
+    def _impose_velocities(self, dt: float) -> None:
+        """Conditions on v*, from which the acceleration follows anew at every node."""
+        nodal = self.nodal
+        for m in range(len(self.bodies)):
+            self.boundary_conditions.apply_velocity(nodal.velocity_star[m], m)
+            self.boundary_conditions.apply_symmetry(nodal.velocity_star[m], m)
+            kernels.rate_of_change(nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m])
+
+    def _conduct_heat(self, dt: float) -> None:
+        """Temperature rates at the nodes: conduction, sources, contact and the conditions on faces."""
+        nodal = self.nodal
+        nodal.temperature_rate[:] = 0.0
+        if self.thermal_contact:
+            capacity = np.array([body.material.specific_heat for body in self.bodies])
+            kernels.exchange_heat(nodal.mass, nodal.temperature, capacity, dt, nodal.temperature_rate)
+        for m in range(len(self.bodies)):
+            kernels.temperature_rate_of_heat(nodal.heat[m], nodal.mass[m], nodal.temperature_rate[m])
+            star = self._temperature_star[m]
+            np.multiply(nodal.temperature_rate[m], dt, out=star)
+            star += nodal.temperature[m]
+            self.boundary_conditions.apply_temperature(star, m)
+            kernels.rate_of_change(
+                star.reshape(-1, 1),
+                self._projected_temperature[m].reshape(-1, 1),
+                dt,
+                nodal.temperature_rate[m].reshape(-1, 1),
+            )
+
+    # ---- grid to particles ---------------------------------------------------------------------------------
+
+    def _move(self, m: int, body: Body, dt: float) -> None:
+        nodal, particles = self.nodal, body.particles
+        gathered, smoothed = np.zeros((0, 3)), self._smoothed[:0]
+        if self.flags.XPIC2 and not body.rigid:
+            gathered, smoothed = np.empty((len(particles), 3)), self._smoothed
+            kernels.smooth_velocity(
+                self.interpolator, self.grid.index, particles, nodal.velocity[m], nodal.mass[m], gathered, smoothed
+            )
+            if len(self._images[0]):
+                kernels.fold_images(smoothed, *self._images)
+            kernels.divide_by_mass(smoothed, nodal.mass[m])
+        motion = kernels.grid_to_particles(
+            self.interpolator,
+            self.grid.index,
+            particles,
+            self._transfer(body),
+            nodal.velocity_star[m],
+            nodal.acceleration[m],
+            nodal.temperature_rate[m],
+            self._temperature_star[m],
+            self.flags.explicit_heat_conduction,
+            gathered,
+            smoothed,
+            dt,
+        )
+        self._add("KineticEnergy", body, motion.kinetic_energy)
+        self._add("ThermalEnergy", body, motion.thermal_energy)
+        self._add("TotalMomentum", body, np.array(motion.momentum))
+        self._add("CenterOfMassPosition", body, np.array(motion.mass_position))
+
+    def _update_stress(self, body: Body, cells: Array, dt: float) -> float:
+        flags = self.flags
+        heating = flags.artificial_viscosity_heating
+        step = Step(
+            dt=dt,
+            time=self.time,
+            length=sum(self.grid.spacing) / 3.0,
+            artificial_viscosity=flags.artificial_viscosity,
+            viscosity_linear=flags.artificial_viscosity_coeff1,
+            viscosity_quadratic=flags.artificial_viscosity_coeff2,
+            viscosity_heating=flags.artificial_viscosity if heating is None else heating,
+        )
+        if self.flags.pressure_stabilization:
+            self._average_dilatation(body, cells, dt)
+        stressed = kernels.update_stresses(
+            body.model,
+            body.state,
+            body.particles,
+            body.material,
+            step,
+            self._kinematics,
+            cells,
+            self._cell_stretch,
+        )
+        if not stressed.finite:
+            raise DivergedError(
+                f"material {body.index} ({body.name}) has a stress or position that is not a finite number "
+                f"after step {self.step_number + 1} at time {self.time + dt:g}"
+            )
+        self._add("StrainEnergy", body, stressed.strain_energy)
+        self._add("TotalVolumeDeformed", body, stressed.volume)
+        return self._limit(body, stressed.wave_speed)
+
+    def _particle_cells(self, body: Body) -> Array:
+        """Cells of the particles at the start of the step, x fastest, where pressure is stabilized."""
+        if not self.flags.pressure_stabilization:
+            return np.zeros(0, dtype=np.int64)
+        cell = self.grid.cell_of(body.particles.position)
+        nx, ny, _ = self.grid.cells
+        return np.asarray(cell[:, 0] + nx * (cell[:, 1] + ny * cell[:, 2]))
+
+    def _average_dilatation(self, body: Body, cells: Array, dt: float) -> None:
+        """The volume change of each cell as a whole, for pressure stabilization."""
+        volume = np.zeros(len(self._owned_cells))
+        reference = np.zeros(len(self._owned_cells))
+        kernels.cell_dilatation(body.particles, cells, self._kinematics, dt, volume, reference)
+        np.divide(volume, reference, out=self._cell_stretch, where=reference > 0.0)
+
+    def _settle(self, body: Body) -> None:
+        kept = np.empty(len(body.particles), dtype=np.bool_)
+        lost = kernels.settle(
+            body.particles,
+            self.grid.index,
+            self.grid.cells,
+            self.grid.periodic,
+            self._owned_cells,
+            self.flags.minimum_particle_mass,
+            kept,
+        )
+        if lost:
+            body.keep(kept)
+
+    # ---- sums ----------------------------------------------------------------------------------------------
+
+    def _add(self, label: str, body: Body, value: Any) -> None:
+        """Record a sum of one body, and add it to the sum of all (material -1)."""
+        self.reductions[label, body.index] = value
+        self.reductions[label, -1] = self.reductions.get((label, -1), 0.0) + value
+
+    def _record_traction(self) -> None:
+        """Force, traction and contact area on the faces that the deck names, before symmetry is imposed."""
+        for name in self.flags.boundary_traction_faces:
+            face = name.replace("minus", "-").replace("plus", "+")
+            force, volume = np.zeros(3), 0.0
+            nodes = _face_nodes(self.grid, face)
+            for m, body in enumerate(self.bodies):
+                if not body.rigid and self._is_active(body):
+                    force -= self.nodal.internal_force[m][nodes].sum(axis=0)
+                volume += float(self.nodal.volume[m][nodes].sum())
+            self.reductions["BndyForce_" + name, -1] = force
+            self._face_forces[name] = (float(force[0]), float(force[1]), float(force[2]))
+            axis = FACES.index(face) // 2
+            self.reductions["BndyContactCellArea_" + name, -1] = 2.0 * volume / self.grid.spacing[axis]
+
+
+def _periodic_images(grid: Grid) -> tuple[Array, Array]:
+    """Pairs (owner, image) of nodes that are one and the same, direction by direction."""
+    owners, images = [], []
+    index = grid.index
+    axes = [np.arange(index.first[a], index.first[a] + index.nodes[a]) for a in range(3)]
+    for axis in range(3):
+        if not grid.periodic[axis]:
+            continue
+        n = grid.cells[axis]
+        for image in (-1, n, n + 1):
+            if image < index.first[axis] or image >= index.first[axis] + index.nodes[axis]:
+                continue
+            there, here = list(axes), list(axes)
+            there[axis], here[axis] = np.array([image]), np.array([image % n])
+            images.append(grid.flat(*np.meshgrid(*there, indexing="ij")).ravel())
+            owners.append(grid.flat(*np.meshgrid(*here, indexing="ij")).ravel())
+    empty = np.zeros(0, dtype=np.int64)
+    return np.concatenate([empty, *owners]), np.concatenate([empty, *images])
+
+
+def _boxes(grid: Grid, nodes: bool) -> Iterator[tuple[slice, slice, slice]]:
+    for patch in grid.patches:
+        yield tuple(  # type: ignore[misc]  # three slices
+            slice(low, high + int(nodes and not grid.has_neighbor(patch, FACES[2 * a + 1])))
+            for a, (low, high) in enumerate(zip(patch.low, patch.high, strict=True))
+        )
+
+
+def _owned_nodes(grid: Grid) -> Array:
+    """(N,) True for the nodes that belong to a patch."""
+    owned = np.zeros(grid.number_of_nodes, dtype=np.bool_)
+    box = grid.as_box(owned)
+    for ranges in _boxes(grid, nodes=True):
+        box[tuple(slice(r.start + g, r.stop + g) for r, g in zip(ranges, grid.ghost, strict=True))] = True
+    return owned
+
+
+def _inner_nodes(grid: Grid) -> Array:
+    """(N,) True for the nodes strictly inside the bounding box."""
+    inner = np.zeros(grid.number_of_nodes, dtype=np.bool_)
+    box = grid.as_box(inner)
+    box[tuple(slice(g + 1, g + n) for g, n in zip(grid.ghost, grid.cells, strict=True))] = True
+    return inner
+
+
+def _owned_cells(grid: Grid) -> Array:
+    """True for the cells that belong to a patch, x fastest."""
+    nx, ny, nz = grid.cells
+    owned = np.zeros((nz, ny, nx), dtype=np.bool_)
+    for x, y, z in _boxes(grid, nodes=False):
+        owned[z, y, x] = True
+    return owned.ravel()
+
+
+def _face_nodes(grid: Grid, face: str) -> Array:
+    """The nodes of a face of the bounding box, extra nodes left out."""
+    axis = FACES.index(face) // 2
+    ranges: list[Any] = [np.arange(n + 1) for n in grid.cells]
+    ranges[axis] = np.array([grid.cells[axis] if face.endswith("+") else 0])
+    i, j, k = np.array(list(itertools.product(*ranges))).T
+    return np.asarray(grid.flat(i, j, k))

@@ -1,0 +1,288 @@
+"""Second-order tensors in three dimensions, for kernels that read like their equations.
+
+:class:`Tensor` is a value of nine numbers with the operators of tensor algebra; in kernels it lives in
+registers (``solver.jit`` tells numba how). Arrays of tensors have the shape (n, 3, 3); :func:`tensor_at`
+and :func:`put_tensor` go between the two.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from solver.dispatch import inline
+
+
+class Tensor:
+    """A 3x3 tensor. ``a + b``, ``a - b``, ``s * a``, ``a * s``, ``a / s``, ``-a``, ``a @ b`` and ``a.T`` work."""
+
+    __slots__ = ("xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz")
+
+    def __init__(
+        self,
+        xx: float,
+        xy: float,
+        xz: float,
+        yx: float,
+        yy: float,
+        yz: float,
+        zx: float,
+        zy: float,
+        zz: float,
+    ) -> None:
+        self.xx, self.xy, self.xz = xx, xy, xz
+        self.yx, self.yy, self.yz = yx, yy, yz
+        self.zx, self.zy, self.zz = zx, zy, zz
+
+    def __add__(self, other: Tensor) -> Tensor:
+        return add(self, other)
+
+    def __sub__(self, other: Tensor) -> Tensor:
+        return subtract(self, other)
+
+    def __mul__(self, factor: float) -> Tensor:
+        return scale(self, factor)
+
+    def __rmul__(self, factor: float) -> Tensor:
+        return scale(self, factor)
+
+    def __truediv__(self, divisor: float) -> Tensor:
+        return scale(self, 1.0 / divisor)
+
+    def __neg__(self) -> Tensor:
+        return scale(self, -1.0)
+
+    def __matmul__(self, other: Tensor) -> Tensor:
+        return matmul(self, other)
+
+    @property
+    def T(self) -> Tensor:  # noqa: N802 - the transpose, as numpy names it
+        """The transpose."""
+        return transpose(self)
+
+    def __repr__(self) -> str:
+        return (
+            f"Tensor([[{self.xx}, {self.xy}, {self.xz}], [{self.yx}, {self.yy}, {self.yz}], "
+            f"[{self.zx}, {self.zy}, {self.zz}]])"
+        )
+
+
+@inline
+def add(a: Tensor, b: Tensor) -> Tensor:
+    """The sum of two tensors."""
+    return Tensor(
+        a.xx + b.xx,
+        a.xy + b.xy,
+        a.xz + b.xz,
+        a.yx + b.yx,
+        a.yy + b.yy,
+        a.yz + b.yz,
+        a.zx + b.zx,
+        a.zy + b.zy,
+        a.zz + b.zz,
+    )
+
+
+@inline
+def subtract(a: Tensor, b: Tensor) -> Tensor:
+    """The difference of two tensors."""
+    return Tensor(
+        a.xx - b.xx,
+        a.xy - b.xy,
+        a.xz - b.xz,
+        a.yx - b.yx,
+        a.yy - b.yy,
+        a.yz - b.yz,
+        a.zx - b.zx,
+        a.zy - b.zy,
+        a.zz - b.zz,
+    )
+
+
+@inline
+def scale(a: Tensor, s: float) -> Tensor:
+    """A tensor times a number."""
+    return Tensor(
+        a.xx * s,
+        a.xy * s,
+        a.xz * s,
+        a.yx * s,
+        a.yy * s,
+        a.yz * s,
+        a.zx * s,
+        a.zy * s,
+        a.zz * s,
+    )
+
+
+@inline
+def matmul(a: Tensor, b: Tensor) -> Tensor:
+    """The product a_ik b_kj."""
+    return Tensor(
+        a.xx * b.xx + a.xy * b.yx + a.xz * b.zx,
+        a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
+        a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
+        a.yx * b.xx + a.yy * b.yx + a.yz * b.zx,
+        a.yx * b.xy + a.yy * b.yy + a.yz * b.zy,
+        a.yx * b.xz + a.yy * b.yz + a.yz * b.zz,
+        a.zx * b.xx + a.zy * b.yx + a.zz * b.zx,
+        a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
+        a.zx * b.xz + a.zy * b.yz + a.zz * b.zz,
+    )
+
+
+@inline
+def transpose(a: Tensor) -> Tensor:
+    """The transpose."""
+    return Tensor(a.xx, a.yx, a.zx, a.xy, a.yy, a.zy, a.xz, a.yz, a.zz)
+
+
+@inline
+def isotropic(s: float) -> Tensor:
+    """The tensor s I."""
+    return Tensor(s, 0.0, 0.0, 0.0, s, 0.0, 0.0, 0.0, s)
+
+
+@inline
+def trace(a: Tensor) -> float:
+    """The trace."""
+    return a.xx + a.yy + a.zz
+
+
+@inline
+def deviator(a: Tensor) -> Tensor:
+    """The part of a tensor that is left when its mean is taken off the diagonal."""
+    return a - isotropic(trace(a) / 3.0)
+
+
+@inline
+def symmetric(a: Tensor) -> Tensor:
+    """The symmetric part."""
+    xy, xz, yz = 0.5 * (a.xy + a.yx), 0.5 * (a.xz + a.zx), 0.5 * (a.yz + a.zy)
+    return Tensor(a.xx, xy, xz, xy, a.yy, yz, xz, yz, a.zz)
+
+
+@inline
+def double_dot(a: Tensor, b: Tensor) -> float:
+    """The full contraction a_ij b_ij."""
+    return (
+        a.xx * b.xx
+        + a.xy * b.xy
+        + a.xz * b.xz
+        + a.yx * b.yx
+        + a.yy * b.yy
+        + a.yz * b.yz
+        + a.zx * b.zx
+        + a.zy * b.zy
+        + a.zz * b.zz
+    )
+
+
+@inline
+def norm(a: Tensor) -> float:
+    """The Frobenius norm."""
+    return math.sqrt(double_dot(a, a))
+
+
+@inline
+def determinant(a: Tensor) -> float:
+    """The determinant."""
+    return (
+        a.xx * (a.yy * a.zz - a.yz * a.zy)
+        + a.xy * (a.yz * a.zx - a.yx * a.zz)
+        + a.xz * (a.yx * a.zy - a.yy * a.zx)
+    )
+
+
+@inline
+def cofactor(a: Tensor) -> Tensor:
+    """The cofactor tensor det(a) a^-T."""
+    return Tensor(
+        a.yy * a.zz - a.yz * a.zy,
+        a.yz * a.zx - a.yx * a.zz,
+        a.yx * a.zy - a.yy * a.zx,
+        a.xz * a.zy - a.xy * a.zz,
+        a.xx * a.zz - a.xz * a.zx,
+        a.xy * a.zx - a.xx * a.zy,
+        a.xy * a.yz - a.xz * a.yy,
+        a.xz * a.yx - a.xx * a.yz,
+        a.xx * a.yy - a.xy * a.yx,
+    )
+
+
+@inline
+def inverse(a: Tensor) -> Tensor:
+    """The inverse; the determinant must not vanish."""
+    return transpose(cofactor(a)) * (1.0 / determinant(a))
+
+
+@inline
+def rotation(F: Tensor) -> Tensor:
+    """The rotation R of the polar decomposition F = R U, for det F > 0.
+
+    Newton's iteration R <- (R + R^-T) / 2 with the determinant scaled to one first (Higham 1986), which
+    converges quadratically. It ends when R no longer changes; a tensor with det F <= 0 has no rotation and
+    comes back as what 30 iterations make of it.
+    """
+    R = F * (1.0 / math.copysign(abs(determinant(F)) ** (1.0 / 3.0), determinant(F)))
+    for _ in range(30):
+        improved = 0.5 * (R + cofactor(R) * (1.0 / determinant(R)))
+        change = norm(improved - R)
+        R = improved
+        if change < 1.0e-15:
+            break
+    return R
+
+
+class Principal(NamedTuple):
+    """Principal values, largest first, of a symmetric tensor."""
+
+    first: float
+    second: float
+    third: float
+
+
+@inline
+def principal_values(a: Tensor) -> Principal:
+    """The eigenvalues of a symmetric tensor, largest first, by the trigonometric form of the cubic's roots."""
+    mean = trace(a) / 3.0
+    s = deviator(a)
+    j2 = 0.5 * double_dot(s, s)
+    if j2 <= 1.0e-300:
+        return Principal(mean, mean, mean)
+    r = 2.0 * math.sqrt(j2 / 3.0)
+    cos3 = min(1.0, max(-1.0, 4.0 * determinant(s) / r**3))
+    angle = math.acos(cos3) / 3.0
+    first = mean + r * math.cos(angle)
+    third = mean + r * math.cos(angle + 2.0 * math.pi / 3.0)
+    return Principal(first, 3.0 * mean - first - third, third)
+
+
+@inline
+def tensor_at(array: Any, p: int) -> Tensor:
+    """The p-th tensor of an array of shape (n, 3, 3)."""
+    return Tensor(
+        array[p, 0, 0],
+        array[p, 0, 1],
+        array[p, 0, 2],
+        array[p, 1, 0],
+        array[p, 1, 1],
+        array[p, 1, 2],
+        array[p, 2, 0],
+        array[p, 2, 1],
+        array[p, 2, 2],
+    )
+
+
+@inline
+def put_tensor(array: Any, p: int, a: Tensor) -> None:
+    """Store a tensor as the p-th of an array of shape (n, 3, 3)."""
+    array[p, 0, 0] = a.xx
+    array[p, 0, 1] = a.xy
+    array[p, 0, 2] = a.xz
+    array[p, 1, 0] = a.yx
+    array[p, 1, 1] = a.yy
+    array[p, 1, 2] = a.yz
+    array[p, 2, 0] = a.zx
+    array[p, 2, 1] = a.zy
+    array[p, 2, 2] = a.zz

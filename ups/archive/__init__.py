@@ -1,0 +1,24 @@
+"""Uintah archives (UDA): writing and reading them, without any physics."""
+
+from ups.archive.errors import ArchiveError
+from ups.archive.layout import Box, Grid, Level, Patch
+from ups.archive.naming import next_numbered_directory
+from ups.archive.reader import Archive, GridField
+from ups.archive.reductions import Reduction, ReductionFormat
+from ups.archive.variables import Variable
+from ups.archive.writer import ArchiveWriter
+
+__all__ = [
+    "Archive",
+    "ArchiveError",
+    "ArchiveWriter",
+    "Box",
+    "Grid",
+    "GridField",
+    "Level",
+    "Patch",
+    "Reduction",
+    "ReductionFormat",
+    "Variable",
+    "next_numbered_directory",
+]

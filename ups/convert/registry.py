@@ -1,0 +1,56 @@
+"""The formats that an archive can be converted to, by the suffix of the output."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from ups.archive import ArchiveError
+from ups.convert.selection import Selection
+
+Progress = Callable[[int, int], None]
+"""Called after each time step with the number done and the number of all."""
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format that archives are converted to.
+
+    Attributes
+    ----------
+    name
+        What the format is called.
+    suffixes
+        Suffixes of the output that choose it; ``""`` stands for a folder.
+    write
+        Writes what is selected to the output and returns the files to open; raises OSError where the
+        disk refuses.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    write: Callable[[Selection, Path, Progress], list[Path]]
+
+
+FORMATS: dict[str, Format] = {}
+"""Known formats by suffix."""
+
+
+def register(format_: Format) -> None:
+    """Make a format known."""
+    for suffix in format_.suffixes:
+        if suffix in FORMATS:
+            raise ValueError(f"both {FORMATS[suffix].name} and {format_.name} claim {suffix!r}")
+        FORMATS[suffix] = format_
+
+
+def format_of(out: Path) -> Format:
+    """Format that the output's suffix asks for; an existing folder asks for that of folders."""
+    suffix = "" if out.is_dir() else out.suffix.lower()
+    if suffix not in FORMATS:
+        known = ", ".join(f"a name ending in {known}" for known in FORMATS if known)
+        raise ArchiveError(
+            out, f"no format is known by the suffix {suffix}", advice=f"give {known}, or a folder"
+        )
+    return FORMATS[suffix]

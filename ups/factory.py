@@ -1,0 +1,411 @@
+"""The one seam between decks and physics: tags become grid, bodies, contact, loads and a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from solver.contact.law import ContactLaw
+from solver.creation import Creation, ParticleIds, create_particles
+from solver.declare import FAMILIES, IntVector, Vector
+from solver.flags import Flags
+from solver.grid import Grid, Patch
+from solver.loads.loads import Loads
+from solver.materials.constitutive import Material, initialize, state_record
+from solver.materials.rigid import Rigid
+from solver.particles import new_arrays
+from ups.deck import Box, Deck, Level, MaterialSection, Specification
+from ups.diagnostics import DeckError, Diagnostics, Located
+from ups.faces import regions
+
+import solver.interpolation  # isort: skip  # declares the family of interpolators
+
+TOLERANCE = 1.0e-6
+"""How far, in cells, a box's edges may lie from the lines of the grid."""
+
+
+class Problem(Exception):
+    """A deck whose parts do not fit together; ``at`` is the place to show."""
+
+    def __init__(self, code: str, message: str, at: Any, suggestion: str | None = None) -> None:
+        super().__init__(message)
+        self.code, self.message, self.at, self.suggestion = code, message, at, suggestion
+
+
+def build(deck: Deck) -> Any:
+    """Make the simulation that a deck describes.
+
+    Returns
+    -------
+    solver.simulation.Simulation
+        with particles in place, loads assigned and nothing moved yet.
+
+    Raises
+    ------
+    DeckError
+        with every diagnostic, where the deck has errors or its parts do not fit together.
+    """
+    specification = deck.require()
+    builder = _Builder(deck, specification)
+    try:
+        return builder.simulation()
+    except Problem as problem:
+        at: Located | None = problem.at if not isinstance(problem.at, type(None)) else deck.document.root
+        deck.diagnostics.error(problem.code, problem.message, at, problem.suggestion)
+        raise DeckError(deck.diagnostics, deck.sources) from None
+
+
+def build_grid(level: Level, place: Callable[[Any], Any]) -> Grid:
+    """The grid of a level: boxes of equal cells, each cut into patches.
+
+    Raises
+    ------
+    Problem
+        where boxes do not fit on one lattice of cells.
+    """
+    boxes = level.Box
+    anchor = tuple(min(box.lower[a] for box in boxes) for a in range(3))
+    for box in boxes:
+        for axis, name in enumerate("xyz"):
+            if not box.upper[axis] > box.lower[axis]:
+                raise Problem("UPS401", f"the upper corner of the box is not above the lower one in {name}", place(box))
+    spacing = _spacing(level, place)
+    patches: list[Patch] = []
+    highest = [0, 0, 0]
+    for box in boxes:
+        low = _cell_index(box, box.lower, anchor, spacing, place)
+        high = _cell_index(box, box.upper, anchor, spacing, place)
+        highest = [max(a, b) for a, b in zip(highest, high, strict=True)]
+        patches += _split(box, low, high, len(patches), place)
+    return Grid(
+        anchor=(anchor[0], anchor[1], anchor[2]),
+        spacing=spacing,
+        cells=(highest[0], highest[1], highest[2]),
+        extra_cells=_common(level, "extraCells", place),
+        periodic=_common(level, "periodic", place),
+        patches=tuple(patches),
+    )
+
+
+def _spacing(level: Level, place: Callable[[Any], Any]) -> Vector:
+    """Cell size of the level, from its spacing or from the boxes' resolutions, which must agree."""
+    found: Vector | None = level.spacing
+    for box in level.Box:
+        own = box.spacing
+        if own is None and box.resolution is not None:
+            sizes = [(u - lo) / n for lo, u, n in zip(box.lower, box.upper, box.resolution, strict=True)]
+            own = (sizes[0], sizes[1], sizes[2])
+        if own is None:
+            continue
+        if found is not None and any(abs(a - b) > TOLERANCE * b for a, b in zip(own, found, strict=True)):
+            raise Problem("UPS405", f"the box has cells of {own}, another box or the level of {found}", place(box))
+        found = found or own
+    if found is None:
+        raise Problem("UPS101", "the box needs <resolution> or <spacing>", place(level.Box[0]))
+    return found
+
+
+def _cell_index(
+    box: Box, corner: Vector, anchor: Any, spacing: Vector, place: Callable[[Any], Any]
+) -> list[int]:
+    index = []
+    for axis in range(3):
+        cells = (corner[axis] - anchor[axis]) / spacing[axis]
+        nearest = round(cells)
+        if abs(cells - nearest) > 1.0e-3:
+            raise Problem(
+                "UPS405",
+                f"the box's corner {corner} is not on the lines of the grid: {cells:g} cells from the anchor in "
+                f"{'xyz'[axis]}",
+                place(box),
+            )
+        index.append(nearest)
+    return index
+
+
+def _split(
+    box: Box, low: list[int], high: list[int], first_id: int, place: Callable[[Any], Any]
+) -> list[Patch]:
+    """Cut a box into patches a x b x c as Uintah numbers them, z fastest."""
+    counts = box.patches
+    for axis in range(3):
+        if counts[axis] > high[axis] - low[axis]:
+            raise Problem("UPS405", f"{counts[axis]} patches in {'xyz'[axis]} are more than cells", place(box))
+    patches = []
+
+    def cut(axis: int, i: int) -> int:
+        return low[axis] + (high[axis] - low[axis]) * i // counts[axis]
+
+    for i in range(counts[0]):
+        for j in range(counts[1]):
+            for k in range(counts[2]):
+                start = (cut(0, i), cut(1, j), cut(2, k))
+                end = (cut(0, i + 1), cut(1, j + 1), cut(2, k + 1))
+                patches.append(Patch(first_id + len(patches), start, end))
+    return patches
+
+
+def _common(level: Level, name: str, place: Callable[[Any], Any]) -> IntVector:
+    """A value that boxes and level must agree on; zeros where none is given."""
+    found: IntVector | None = getattr(level, name)
+    for box in level.Box:
+        own = getattr(box, name)
+        if own is not None and found is not None and own != found:
+            raise Problem("UPS405", f"<{name}> differs from that of another box or of the level", place(box))
+        found = found or own
+    return found or (0, 0, 0)
+
+
+class _Builder:
+    def __init__(self, deck: Deck, specification: Specification) -> None:
+        self.deck = deck
+        self.spec = specification
+        self.flags: Flags = specification.MPM
+        self.place = deck.reader.place
+        self.diagnostics: Diagnostics = deck.diagnostics
+
+    def simulation(self) -> Any:
+        from solver.boundary_conditions import BoundaryConditions
+        from solver.simulation import Simulation
+
+        self._refuse_unsupported()
+        grid = self._grid()
+        interpolator = self._interpolator(grid)
+        contact: tuple[ContactLaw, ...] = self.spec.MaterialProperties.MPM.contact
+        materials = self.spec.MaterialProperties.MPM.material
+        for law in contact:
+            self._guard("UPS402", law, lambda law=law: law.check(len(materials)))  # type: ignore[misc]
+        loads = self._loads(grid)
+        creations = self._particles(grid, interpolator, loads, contact)
+        bodies = [self._body(i, m, c, contact) for i, (m, c) in enumerate(zip(materials, creations, strict=True))]
+        face_section = self.spec.Grid.BoundaryConditions
+        simulation = Simulation(
+            grid=grid,
+            bodies=bodies,
+            interpolator=interpolator,
+            flags=self.flags,
+            gravity=self._gravity(),
+            boundary_conditions=BoundaryConditions(
+                regions(face_section, len(bodies), self._problem_at),
+                grid,
+                len(bodies),
+                extra_nodes=self.flags.interpolator != "linear",
+            ),
+            contact_laws=contact,
+            thermal_contact=self.spec.MaterialProperties.MPM.thermal_contact is not None,
+            time=self.spec.Time.initTime,
+        )
+        self._attach_loads(simulation, loads, creations)
+        self._attach_motions(simulation)
+        return simulation
+
+    # ---- parts ---------------------------------------------------------------------------------------------
+
+    def _problem_at(self, code: str, message: str, record: Any) -> Exception:
+        return Problem(code, message, self.place(record))
+
+    def _guard(self, code: str, record: Any, action: Callable[[], Any]) -> Any:
+        """Run an action; what it raises as ValueError becomes a problem at the record's place."""
+        try:
+            return action()
+        except FileNotFoundError as problem:
+            raise Problem("UPS408", str(problem), self.place(record)) from None
+        except ValueError as problem:
+            raise Problem(code, str(problem), self.place(record)) from None
+
+    def _refuse_unsupported(self) -> None:
+        flags = self.flags
+        asked = {
+            "time_integrator implicit": flags.time_integrator != "explicit",
+            "interpolator 4thorderBS": flags.interpolator == "4thorderBS",
+            "use_cohesive_zones": flags.use_cohesive_zones,
+            "refine_particles": flags.refine_particles,
+            "DoGranularMPM": flags.granular,
+            "RunMMSProblem": bool(flags.manufactured_solution),
+            "do_scalar_diffusion": flags.scalar_diffusion,
+            "coupled_flow_analysis": flags.coupled_flow,
+        }
+        for what, wanted in asked.items():
+            if wanted:
+                tag = what.split()[0]
+                element = self.place(flags)
+                at = element.get(tag) if element is not None else None
+                raise Problem("UPS412", f"{what} is known, and not run by this program", at or element)
+
+    def _grid(self) -> Grid:
+        levels = self.spec.Grid.Level
+        if len(levels) > 1:
+            raise Problem("UPS412", "this program runs on one level", self.place(levels[1]))
+        return build_grid(levels[0], self.place)
+
+    def _interpolator(self, grid: Grid) -> Any:
+        name = self.flags.interpolator
+        chosen = FAMILIES["interpolator"].models[name]
+        interpolator = self._guard(
+            "UPS405",
+            self.flags,
+            lambda: chosen.for_deck(self.flags.axisymmetric, self.flags.cpdi_lcrit),  # type: ignore[attr-defined]
+        )
+        sums = tuple(e + p for e, p in zip(grid.extra_cells, grid.periodic, strict=True))
+        level = self.place(self.spec.Grid.Level[0])
+        if name == "linear":
+            if any(grid.extra_cells):
+                raise Problem("UPS409", "the linear interpolator takes extraCells [0,0,0]", level, "set <extraCells> [0,0,0]")
+        else:
+            needed = (1, 1, 0) if self.flags.axisymmetric else (1, 1, 1)
+            if sums != needed:
+                text = str(list(needed)).replace(" ", "")
+                raise Problem(
+                    "UPS409",
+                    f"the {name} interpolator needs extraCells and periodic to add up to {text}, here {list(sums)}",
+                    level,
+                    f"set <extraCells> {text}",
+                )
+        if self.flags.axisymmetric and grid.cells[2] != 1:
+            raise Problem("UPS409", "an axisymmetric grid is one cell thick in z", level)
+        return interpolator
+
+    def _gravity(self) -> Vector:
+        constants = self.spec.PhysicalConstants.gravity
+        if constants is not None:
+            return constants
+        return self.flags.gravity or (0.0, 0.0, 0.0)
+
+    def _constants(self, section: MaterialSection) -> Material:
+        return Material(
+            density=section.density,
+            specific_heat=section.specific_heat,
+            specific_heat_constant_pressure=section.C_p if section.C_p is not None else section.specific_heat,
+            thermal_conductivity=section.thermal_conductivity,
+            room_temperature=section.room_temp,
+            melt_temperature=section.melt_temp,
+            thermal_expansion=section.linear_thermal_expansion_coef,
+        )
+
+    def _loads(self, grid: Grid) -> Loads | None:
+        records = self.spec.PhysicalBC.MPM.loads
+        if not self.flags.use_load_curves:
+            return None
+        loads: Loads = self._guard(
+            "UPS407",
+            self.spec.PhysicalBC.MPM,
+            lambda: Loads(
+                records,
+                grid,
+                follow_rotation=self.flags.keep_pressure_normal,
+                on_corners=self.flags.use_CBDI_boundary_condition,
+            ),
+        )
+        return loads
+
+    def _particles(
+        self, grid: Grid, interpolator: Any, loads: Loads | None, contact: tuple[ContactLaw, ...]
+    ) -> list[Creation]:
+        ids = ParticleIds(grid)
+        find_surface = loads is not None or any(law.needs_surface for law in contact)
+        creations = []
+        for section in self.spec.MaterialProperties.MPM.material:
+            creation = self._guard(
+                "UPS403",
+                section,
+                lambda section=section: create_particles(  # type: ignore[misc]
+                    section.geom_object,
+                    grid,
+                    self._constants(section),
+                    ids,
+                    axisymmetric=self.flags.axisymmetric,
+                    tetrahedral=self.flags.interpolator == "cpti",
+                    find_surface=find_surface,
+                ),
+            )
+            creations.append(creation)
+            if section.geom_object and len(creation.particles) == 0:
+                self.diagnostics.warning(
+                    "UPS411", "no particle lies in the shapes of this material", self.place(section)
+                )
+        if not any(len(c.particles) for c in creations):
+            at = self.place(self.spec.MaterialProperties.MPM)
+            raise Problem("UPS411", "the deck has no particles: no shape covers a lattice point of the grid", at)
+        return creations
+
+    def _body(self, index: int, section: MaterialSection, creation: Creation, contact: tuple[ContactLaw, ...]) -> Any:
+        from solver.simulation import Body
+
+        model = section.constitutive_model
+        material = self._constants(section)
+        state = new_arrays(state_record(model), len(creation.particles))
+        self._guard(
+            "UPS502", model, lambda: initialize(model, state, creation.particles, material, creation.patch)
+        )
+        return Body(
+            index=index,
+            name=section.name or type(model).__name__,
+            material=material,
+            model=model,
+            state=state,
+            particles=creation.particles,
+            rigid=section.is_rigid
+            or isinstance(model, Rigid)
+            or any(index in law.made_rigid for law in contact),
+            transmits_force=section.is_force_transmitting_material,
+            activation_time=section.activation_time,
+            is_active=section.is_active,
+            possible_alpha=section.possible_alpha_material
+            and not any(index in law.never_alpha for law in contact),
+        )
+
+    def _attach_loads(self, simulation: Any, loads: Loads | None, creations: list[Creation]) -> None:
+        if loads is None:
+            return
+        self._guard("UPS403", self.spec.PhysicalBC.MPM, lambda: loads.prepare(creations))
+        for notice in loads.notices:
+            self.diagnostics.warning("UPS411", notice.message, self.place(notice.load))
+
+        def apply(sim: Any, dt: float) -> None:
+            loads.apply(sim.time, [body.particles for body in sim.bodies])
+
+        simulation.loads = loads
+        simulation.before_step.append(apply)
+        if self.flags.use_CBDI_boundary_condition:
+            simulation.spread_corner_loads = lambda body, force: loads.scatter_corner_forces(
+                body.index, body.particles, force
+            )
+
+    def _attach_motions(self, simulation: Any) -> None:
+        """Prescribed deformation and inserted particles, from the files that the flags name."""
+        from solver.insertion import read_insertions
+        from solver.prescribed_motion import read_prescribed_deformation
+
+        flags, open_file = self.flags, self.deck.reader.open_file
+        if flags.use_prescribed_deformation:
+            motion = self._guard(
+                "UPS502",
+                flags,
+                lambda: read_prescribed_deformation(
+                    open_file(flags.prescribed_deformation_file), flags.exact_deformation
+                ),
+            )
+            nodes = simulation.grid.node_positions()
+            simulation.after_boundary_conditions.append(
+                lambda sim, dt: motion.impose(sim.nodal, nodes, sim.time, dt)
+            )
+            if flags.exact_deformation:
+                simulation.time_step_limits.append(motion.time_step)
+        if flags.insert_particles:
+            insertions = self._guard(
+                "UPS502", flags, lambda: read_insertions(open_file(flags.insert_particles_file))
+            )
+            simulation.after_step.append(
+                lambda sim, dt: insertions.apply([body.particles for body in sim.bodies], sim.time, dt)
+            )
+
+
+def expected_steps(specification: Specification, first_step: float) -> int:
+    """A guess at the number of time steps: the time span over the first step, within the deck's limits."""
+    control = specification.Time
+    if first_step <= 0.0 or not np.isfinite(first_step):
+        return control.max_Timesteps
+    guess = int((control.maxTime - control.initTime) / first_step) + 1
+    return min(guess, control.max_Timesteps) if control.max_Timesteps else guess
