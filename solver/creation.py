@@ -10,13 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.declare import IntVector, Parameter, SubModel, Vector
-from solver.geometry.piece import GeometryPiece, ParticleSource, check_declared_bounds
+from solver.geometry.piece import GeometryPiece, ParticleSource, as_vector, check_declared_bounds
 from solver.geometry.tri import Tri
 from solver.geometry.union import Union
 from solver.grid import Grid, Patch
@@ -157,6 +158,17 @@ class Creation(NamedTuple):
     """(n, 3) surface normals that a particle file gave, else 0."""
 
 
+class _Filled(NamedTuple):
+    """Lattice points that become particles."""
+
+    position: Array
+    """(n, 3) before any affine transformation."""
+    level: Array
+    """(n,) filling level: 0 for particles of the full size, then half as large on each level."""
+    surface: Array
+    """(n,) 1.0 at the surface, if that is looked for, else 0.0."""
+
+
 class _Batch(NamedTuple):
     """Particles of one object; ``listed`` holds what the piece itself said of them, by name."""
 
@@ -257,23 +269,21 @@ def _filled_particles(
     ``in_rows``: particles come row by row through the whole patch instead of cell by cell, which is Uintah's
     order for materials whose pieces are all triangulated surfaces.
     """
-    points, levels, patches = [np.zeros((0, 3))], [np.zeros(0, np.int8)], [np.zeros(0, np.int32)]
     shape = body.shape
-    for index, patch in enumerate(grid.patches):
-        filled = list(_fill(body, shape, grid, patch))
-        position = np.concatenate([f[0] for f in filled] or [points[0]])
-        level = np.concatenate([f[1] for f in filled] or [levels[0]])
+    offsets = _neighbours(body.spacing(grid), grid) if find_surface else []
+    blocks = []
+    for patch in grid.patches:
+        filled = _joined(list(_fill(body, shape, grid, patch, offsets)))
         if in_rows:
-            position = position[np.lexsort(position.T)]
-        points.append(position)
-        levels.append(level)
-        patches.append(np.full(len(position), index, np.int32))
-    position, level = np.concatenate(points), np.concatenate(levels)
-    surface = _on_surface(shape, position, body.spacing(grid), grid) if find_surface else np.zeros(len(level))
+            by_row = np.lexsort(filled.position.T)
+            filled = _Filled(*(array[by_row] for array in filled))
+        blocks.append(filled)
+    patches = np.repeat(np.arange(len(blocks), dtype=np.int32), [len(b.level) for b in blocks])
+    position, level, surface = _joined(blocks)
     depth = np.arange(max(abs(body.filling_levels), 1))
     size = body.map @ (np.diag(1.0 / np.array(body.res)) * 0.5 ** depth[:, None, None])
     volume = _volumes(size, grid, axisymmetric)[level]
-    position, patch_index = _place(body, position, np.concatenate(patches), grid)
+    position, patch_index = _place(body, position, patches, grid)
     if axisymmetric:
         volume = _radius(position) * volume
     return _Batch(position, size[level], volume, patch_index, surface, surface > 0.0, {})
@@ -301,7 +311,8 @@ def _listed_particles(
             volume = _radius(position) * volume
     surface = np.zeros(count)
     if find_surface:
-        surface = _on_surface(body.shape, reference, body.spacing(grid), grid)
+        neighbours = [reference + offset for offset in _neighbours(body.spacing(grid), grid)]
+        surface[~np.all([body.shape.inside(points) for points in neighbours], axis=0)] = 1.0
     return _Batch(
         position,
         np.broadcast_to(size, (count, 3, 3)),
@@ -363,25 +374,25 @@ def _radius(position: Array) -> Array:
     return radius
 
 
-def _on_surface(shape: GeometryPiece, position: Array, spacing: Vector, grid: Grid) -> Array:
-    """1.0 where a neighbour at a particle spacing is outside the shape, else 0.0, (n,).
+def _neighbours(spacing: Vector, grid: Grid) -> list[Vector]:
+    """Where the neighbours of a particle lie that are inside unless it is at the surface, seen from it.
 
     In a grid one cell thick in z the neighbours in z do not count.
     """
-    surface = np.zeros(len(position))
-    for axis in range(3 if grid.cells[2] > 1 else 2):
-        for step in (-spacing[axis], spacing[axis]):
-            undecided = np.flatnonzero(surface == 0.0)
-            neighbour = position[undecided]
-            neighbour[:, axis] += step
-            surface[undecided[~shape.inside(neighbour)]] = 1.0
-    return surface
+    axes = range(3 if grid.cells[2] > 1 else 2)
+    return [as_vector(step * spacing[axis] * np.eye(3)[axis]) for axis in axes for step in (-1.0, 1.0)]
+
+
+def _joined(blocks: Sequence[_Filled]) -> _Filled:
+    """Blocks of particles one after the other."""
+    none = _Filled(np.zeros((0, 3)), np.zeros(0, np.int8), np.zeros(0))
+    return _Filled(*(np.concatenate(arrays) for arrays in zip(none, *blocks, strict=True)))
 
 
 def _fill(
-    body: GeometryObject, shape: GeometryPiece, grid: Grid, patch: Patch
-) -> Iterator[tuple[Array, Array]]:
-    """Positions (n, 3) and filling levels (n,) of a patch's lattice points in a shape, block by block."""
+    body: GeometryObject, shape: GeometryPiece, grid: Grid, patch: Patch, offsets: list[Vector]
+) -> Iterator[_Filled]:
+    """The lattice points of a patch in a shape, block by block."""
     lower, upper = (np.array(corner) for corner in shape.bounding_box())
     anchor, h = np.array(grid.anchor), np.array(grid.spacing)
     # A cell more on every side, to be safe from rounding; clipped to the patch before it is made an integer.
@@ -392,7 +403,7 @@ def _fill(
     finest = 2 ** (max(abs(body.filling_levels), 1) - 1)
     points_a_cell = body.res[0] * body.res[1] * body.res[2] * finest**3
     for block_low, block_high in _blocks(low, high, points_a_cell):
-        yield _fill_block(body, shape, grid, block_low, block_high)
+        yield _fill_block(body, shape, grid, block_low, block_high, offsets)
 
 
 def _blocks(low: Array, high: Array, points_a_cell: int) -> Iterator[tuple[Array, Array]]:
@@ -417,26 +428,25 @@ def _lattice(grid: Grid, res: IntVector, low: Array, high: Array) -> list[Array]
 
 
 def _fill_block(
-    body: GeometryObject, shape: GeometryPiece, grid: Grid, low: Array, high: Array
-) -> tuple[Array, Array]:
-    """Positions and filling levels of the particles in a block of cells, in the order of creation."""
-    points, levels, cells = [], [], []
-    lattices = [
-        _lattice(grid, _refined(body.res, level), low, high)
-        for level in range(max(abs(body.filling_levels), 1))
-    ]
-    for depth, mask in enumerate(_lattice_masks(shape, lattices, body.filling_levels < 0)):
-        res = _refined(body.res, depth)
+    body: GeometryObject, shape: GeometryPiece, grid: Grid, low: Array, high: Array, offsets: list[Vector]
+) -> _Filled:
+    """The particles in a block of cells, in the order of creation."""
+    resolutions = [_refined(body.res, level) for level in range(max(abs(body.filling_levels), 1))]
+    lattices = [_lattice(grid, res, low, high) for res in resolutions]
+    masks = _lattice_masks(shape, lattices, body.filling_levels < 0)
+    parts, cells = [], []
+    for level, (mask, lattice, res) in enumerate(zip(masks, lattices, resolutions, strict=True)):
         i, j, k, cell = _in_order_of_creation(mask, res)
-        x, y, z = lattices[depth]
-        points.append(np.stack([x[i], y[j], z[k]], axis=1))
-        levels.append(np.full(len(i), depth, np.int8))
+        x, y, z = lattice
+        surface = np.zeros(len(i))
+        if offsets and len(i):
+            surface[~_all_inside(shape, lattice, offsets)[k, j, i]] = 1.0
+        parts.append(_Filled(np.stack([x[i], y[j], z[k]], axis=1), np.full(len(i), level, np.int8), surface))
         cells.append(cell)
-    position, level = np.concatenate(points), np.concatenate(levels)
-    if len(cells) == 1:
-        return position, level
+    if len(parts) == 1:
+        return parts[0]
     cell_by_cell = np.argsort(np.concatenate(cells), kind="stable")
-    return position[cell_by_cell], level[cell_by_cell]
+    return _Filled(*(array[cell_by_cell] for array in _joined(parts)))
 
 
 def _refined(res: IntVector, level: int) -> IntVector:
@@ -454,8 +464,9 @@ def _lattice_masks(shape: GeometryPiece, lattices: Sequence[list[Array]], trim: 
     for level, lattice in enumerate(lattices):
         if trim and masks:
             # Half a spacing of this level is where the next smaller particles would lie.
-            reach = [0.5 * (axis[1] - axis[0]) for axis in lattice]
-            masks = [m & _fits(shape, lattices[n], reach) for n, m in enumerate(masks)]
+            reach = np.array([0.5 * (axis[1] - axis[0]) for axis in lattice])
+            corners = [as_vector(reach * (2.0 * np.array(sides) - 1.0)) for sides in np.ndindex(2, 2, 2)]
+            masks = [m & _all_inside(shape, lattices[n], corners) for n, m in enumerate(masks)]
         mask = shape.on_lattice(*lattice)
         for coarser, larger in enumerate(masks):
             mask &= ~_magnified(larger, 2 ** (level - coarser))
@@ -463,14 +474,10 @@ def _lattice_masks(shape: GeometryPiece, lattices: Sequence[list[Array]], trim: 
     return masks
 
 
-def _fits(shape: GeometryPiece, lattice: list[Array], reach: list[float]) -> Array:
-    """Where the eight points at (+-reach, +-reach, +-reach) from a lattice point lie inside, [k, j, i]."""
+def _all_inside(shape: GeometryPiece, lattice: list[Array], offsets: Sequence[Vector]) -> Array:
+    """Where all the points at the given offsets from a lattice point lie in the shape, [k, j, i]."""
     x, y, z = lattice
-    fits = np.ones((len(z), len(y), len(x)), bool)
-    for corner in np.ndindex(2, 2, 2):
-        dx, dy, dz = (r * (2 * side - 1) for r, side in zip(reach, corner, strict=True))
-        fits &= shape.on_lattice(x + dx, y + dy, z + dz)
-    return fits
+    return reduce(np.logical_and, (shape.on_lattice(x + dx, y + dy, z + dz) for dx, dy, dz in offsets))
 
 
 def _magnified(mask: Array, factor: int) -> Array:

@@ -31,6 +31,9 @@ CHANNELS = 13
 """Width of the array that particles scatter to: mass, momentum (3), volume, internal force (3), external
 force (3), mass times temperature, heat. One row is one node, so a particle touches few cache lines."""
 
+EXTERNAL_FORCE = slice(8, 11)
+"""The channels of external force."""
+
 
 class Transfer(NamedTuple):
     """Options of a material's transfers between particles and grid."""

@@ -20,7 +20,7 @@ from solver.boundary_conditions import BoundaryConditions
 from solver.contact.law import ContactLaw, ContactScene
 from solver.flags import Flags
 from solver.grid import FACES, Grid
-from solver.kernels import CHANNELS, Kinematics, Transfer
+from solver.kernels import CHANNELS, EXTERNAL_FORCE, Kinematics, Transfer
 from solver.materials.constitutive import Material, Step, initial_sound_speed, time_step_limit
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.particles import Particles, keep
@@ -171,7 +171,8 @@ class Simulation:
             cells = self._particle_cells(body)
             self._move(m, body, dt)
             stable = min(stable, self._update_stress(body, cells, dt))
-        self.reductions.update(scene.reductions)
+        for key, value in scene.reductions.items():
+            self.reductions[key] = self.reductions.get(key, 0.0) + value
         for action in self.after_step:
             action(self, dt)
         for body in self.bodies:
@@ -203,6 +204,8 @@ class Simulation:
             kernels.particles_to_grid(
                 self.interpolator, self.grid.index, body.particles, self._transfer(body), self._sums
             )
+            if self.spread_corner_loads is not None:
+                self.spread_corner_loads(body, self._sums[:, EXTERNAL_FORCE])
         else:
             self._sums[:] = 0.0
         if len(self._images[0]):
@@ -217,8 +220,6 @@ class Simulation:
             nodal.temperature[m],
             nodal.heat[m],
         )
-        if self.spread_corner_loads is not None:
-            self.spread_corner_loads(body, nodal.external_force[m])
         self._projected_temperature[m] = nodal.temperature[m]
         self.boundary_conditions.apply_temperature(nodal.temperature[m], m)
         self.boundary_conditions.apply_symmetry(nodal.velocity[m], m)

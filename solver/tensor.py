@@ -186,11 +186,14 @@ def norm(a: Tensor) -> float:
 
 @inline
 def determinant(a: Tensor) -> float:
-    """The determinant."""
+    """The determinant, by the rule of Sarrus."""
     return (
-        a.xx * (a.yy * a.zz - a.yz * a.zy)
-        + a.xy * (a.yz * a.zx - a.yx * a.zz)
-        + a.xz * (a.yx * a.zy - a.yy * a.zx)
+        a.xx * a.yy * a.zz
+        + a.xy * a.yz * a.zx
+        + a.xz * a.yx * a.zy
+        - a.xx * a.yz * a.zy
+        - a.xy * a.yx * a.zz
+        - a.xz * a.yy * a.zx
     )
 
 

@@ -27,6 +27,7 @@ class Meta:
     """What the deck says of itself."""
 
     title: Annotated[str, Parameter("what the deck is about")] = ""
+    info: Annotated[str, Parameter("more about it")] = ""
 
 
 @dataclass(frozen=True)

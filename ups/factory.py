@@ -254,14 +254,13 @@ class _Builder:
             if any(grid.extra_cells):
                 raise Problem("UPS409", "the linear interpolator takes extraCells [0,0,0]", level, "set <extraCells> [0,0,0]")
         else:
-            needed = (1, 1, 0) if self.flags.axisymmetric else (1, 1, 1)
-            if sums != needed:
-                text = str(list(needed)).replace(" ", "")
+            allowed = [(1, 1, 1)] + [(1, 1, 0)] * self.flags.axisymmetric
+            if sums not in allowed:
                 raise Problem(
                     "UPS409",
-                    f"the {name} interpolator needs extraCells and periodic to add up to {text}, here {list(sums)}",
+                    f"the {name} interpolator needs extraCells and periodic to add up to [1,1,1], here {list(sums)}",
                     level,
-                    f"set <extraCells> {text}",
+                    f"set <extraCells> {[1 - p for p in grid.periodic]}",
                 )
         if self.flags.axisymmetric and grid.cells[2] != 1:
             raise Problem("UPS409", "an axisymmetric grid is one cell thick in z", level)

@@ -200,7 +200,7 @@ class Reader:
 
     def model(self, family: Family, element: Element) -> Any | None:
         """Read the model of a family that an element names; None after diagnostics."""
-        if family.key == "tag" and element.tag not in family.old_names:
+        if family.name == "geometry":
             return self._piece(family, element)
         if family.tag and element.tag != family.tag and family.key != "tag":
             self._old_tag(element, family.tag)
@@ -261,7 +261,8 @@ class Reader:
             if label is not None and not element.children:
                 return self.named_pieces.refer(element.tag, label.value)
             piece = self.read(family.models[element.tag], element)
-            if piece is not None:
+            if piece is not None and not any(a.tag == "PhysicalBC" for a in element.ancestors()):
+                # As in Uintah, pieces of loads are not known by name elsewhere.
                 self.named_pieces.define(element.tag, piece)
             return piece
         except ValueError as problem:

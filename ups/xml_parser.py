@@ -455,9 +455,12 @@ def _explain_character(text: str, here: int) -> _Explanation:
 
 def _explain_tag(text: str, start: int, here: int) -> _Explanation | None:
     """Say what is wrong with the tag that begins at `start`, when it is one of the usual mistakes."""
+    if text.startswith("<<", start):
+        return "two < in a row", start, start + 2, "remove one"
     found = _TAG_NAME.match(text, start)
     if found is None:
-        return None
+        nameless = text.startswith("</", start)
+        return ("a closing tag without a name", start, start + 2, "write </name>") if nameless else None
     blank, slash, tag = found.groups()
     if blank:
         return f"a blank between < and the name of the tag {tag}", start, found.end(), f"write <{slash}{tag}"

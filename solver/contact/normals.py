@@ -23,7 +23,7 @@ LEAST_MASS = 1.0e-100
 
 
 class SurfaceFields(NamedTuple):
-    """Where the surface of each material passes the nodes, first axis the material."""
+    """How surfaces pass the nodes that two or more materials share, first axis the material; else zeros."""
 
     normal: Array
     """(M, N, 3) unit vectors out of the body; 0 where there is none."""
@@ -48,9 +48,11 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     spacing = scene.grid.spacing
     scale = (spacing[0], spacing[1], 0.0) if scene.axisymmetric else (1.0, 1.0, 1.0)
     stress = np.zeros((*shape[:2], 6))
+    shared = np.count_nonzero(nodal.mass > EMPTY_MASS, axis=0) >= 2
     for m, particles in enumerate(scene.particles):
         add_particles(
             particle_shapes(scene, m),
+            shared,
             particles.mass,
             particles.mass / particles.volume if scene.axisymmetric else particles.mass,
             scale,
@@ -70,6 +72,7 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
 @deferred_kernel
 def add_particles(
     shapes: ParticleShapes,
+    wanted: Array,
     mass: Array,
     gradient_weight: Array,
     gradient_scale: Vector,
@@ -78,13 +81,15 @@ def add_particles(
     nodal_moment: Array,
     nodal_stress: Array,
 ) -> None:
-    """Sum gradients, mass times position, and stress (xx, yy, zz, xy, xz, yz) of one material's particles."""
+    """Sum gradients, mass times position, and stress (xx, yy, zz, xy, xz, yz) at the wanted nodes (N,)."""
     nodes = np.empty(MOST_NODES, np.int64)
     weights = np.empty(MOST_NODES)
     gradients = np.empty((MOST_NODES, 3))
     for p in range(mass.shape[0]):
         for k in range(shape_of(shapes, p, nodes, weights, gradients)):
             n = shapes.images.node[nodes[k]]
+            if not wanted[n]:
+                continue
             x = plus(vector_at(shapes.position, p), vector_at(shapes.images.shift, nodes[k]))
             for axis in range(3):
                 nodal_gradient[n, axis] += gradient_weight[p] * gradients[k, axis] * gradient_scale[axis]

@@ -35,9 +35,10 @@ class Specified(PrescribedMotion):
     """Where the master has mass, listed materials take its velocity in the chosen directions.
 
     v_k <- u_k for the directions k with ``direction`` 1, u being the prescribed velocity of the master. The
-    master itself takes all of u after the forces. With ``normal_only`` a material loses, after the forces,
-    no more than the part of v - u that goes against the master's surface normal n: if (v - u) . n < 0,
-    v <- v - ((v - u) . n) n.
+    master itself takes all of u after the forces. With ``normal_only`` another material loses, after the
+    forces, no more than the part of v - u that goes against the master's surface normal n:
+    if (v - u) . n < 0, v <- v - ((v - u) . n) n. (In Uintah that holds for the master too, which then does
+    not follow a profile.)
 
     A ``condition`` lets the force on a face of the domain (one of ``boundary_traction_faces``) change the
     motion once: when a component exceeds ``conditionValue``, the profile goes on from its next row or from
@@ -170,7 +171,7 @@ def impose_velocity_star(
         rigid = rigid_velocity(motion, position, vector_at(velocity[master], n))
         for m in listed:
             old = vector_at(velocity[m], n)
-            if normal.shape[0] > 0:
+            if normal.shape[0] > 0 and m != master:
                 approach = min(0.0, dot(vector_at(normal, n), minus(old, rigid)))
                 new = minus(old, times(approach, vector_at(normal, n)))
             else:

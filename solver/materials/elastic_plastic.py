@@ -32,6 +32,7 @@ from solver.materials.flow_stress import flow_stress, hardening_slope
 from solver.materials.melting import melting_temperature
 from solver.materials.melting.constant_melting import ConstantMelting
 from solver.materials.plasticity_state import PlasticityState, at_plastic_strain, with_thermal_properties
+from solver.materials.polar_rotation import polar_rotation
 from solver.materials.return_algorithm import PlasticReturn, PlasticTrial, return_to_yield
 from solver.materials.return_algorithm.radial_return import RadialReturn
 from solver.materials.shear_modulus import shear_modulus
@@ -51,7 +52,6 @@ from solver.tensor import (
     norm,
     principal_values,
     put_tensor,
-    rotation,
     symmetric,
     tensor_at,
     trace,
@@ -294,7 +294,7 @@ def kinematics(point: Point, old_rotation: Tensor, density: float) -> Kinematics
     """Rate of deformation in the frame that R of the old deformation gradient turns with."""
     rate = old_rotation.T @ (symmetric(point.velocity_gradient) @ old_rotation)
     return Kinematics(
-        old_rotation, rotation(point.deformation_gradient), rate, deviator(rate), trace(rate), density
+        old_rotation, polar_rotation(point.deformation_gradient), rate, deviator(rate), trace(rate), density
     )
 
 

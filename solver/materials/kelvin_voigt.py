@@ -42,10 +42,10 @@ class KelvinVoigtState(NamedTuple):
 class KelvinVoigt(NamedTuple):
     """A spring and a dashpot that share the rate of deformation d.
 
-    sigma = sigma_e + 2 eta_G dev d + eta_K tr d I, where the spring obeys sigma_e' = 2 G dev d + K tr d I in the
-    frame that turns with R of F = R U. The energy is the work of the step. Uintah adds the dashpot's stress of
-    every step to the spring's, takes a third of the bulk terms and leaves the old stress where it was when the
-    body turns; here the equations are solved as they stand.
+    sigma = sigma_e + 2 eta_G dev d + eta_K tr d I, where the spring obeys sigma_e' = 2 G dev d + K tr d I in
+    the frame that turns with R of F = R U. The energy is the work of the step. Uintah adds the dashpot's
+    stress of every step to the spring's, takes a third of the bulk terms and leaves the old stress where it
+    was when the body turns; here the equations are solved as they stand.
     """
 
     elastic_shear: Annotated[float, Parameter("shear modulus G of the spring", unit="Pa", gt=0.0)]

@@ -47,9 +47,9 @@ class MWViscoElastic(NamedTuple):
 
     With the rate of deformation d, sigma = sigma_e + s - p I, sigma_e' = 2 G_e dev d + K_e tr d I,
     s' / (2 G_v) + s / eta_d = dev d and p' / (3 K_v) + p / eta_v = -tr d / 3, the Maxwell element by backward
-    Euler. The rate is not objective: large rotations need another model. The energy is what the springs store,
-    with the pressures of both taken together over K_e + K_v, plus what s dissipates in the step. (Uintah adds
-    the dissipation of every particle that it has passed in the patch to each next one.)
+    Euler. The rate is not objective: large rotations need another model. The energy is what the springs
+    store, with the pressures of both taken together over K_e + K_v, plus what s dissipates in the step.
+    (Uintah adds the dissipation of every particle that it has passed in the patch to each next one.)
     """
 
     e_shear_modulus: Annotated[float, Parameter("shear modulus of the spring G_e", unit="Pa", gt=0.0)]

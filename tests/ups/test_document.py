@@ -156,13 +156,13 @@ def test_cdata_and_processing_instructions():
     assert document.root.get("b").text == "1"
 
 
-names = st.from_regex(r"[A-Za-zé_][A-Za-z0-9é_.-]{0,6}", fullmatch=True)
+names = st.text("aBé_", min_size=1, max_size=3)
 values = st.text("ab 1.é€\U0001f600\n&<>\"'[],", max_size=12)
 
 
 @st.composite
 def elements(draw, depth=0):
-    tag = draw(names.filter(lambda name: name.lower() != "xml" and name != "include"))
+    tag = draw(names)
     attributes = draw(st.dictionaries(names, values, max_size=2))
     quote = draw(st.sampled_from("\"'"))
     entity = {'"': "&quot;", "'": "&#39;"}[quote]
@@ -185,7 +185,7 @@ comments = st.sampled_from(
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(st.lists(elements(), max_size=4).map("\n".join))
 def test_any_tree_is_read_as_lxml_reads_it_with_every_position(body):
     text = wrapped(body)
@@ -412,6 +412,8 @@ def test_no_input_is_a_traceback(tmp_path_factory, data):
         ("< a>2</a>", "UPS002", 2, "< a", "blank between <"),
         ("<!-- a -- b -->", "UPS002", 2, "--", "two hyphens"),
         ("<a/>\n<!-- a", "UPS002", 3, "<", "comment <!-- that begins here does not end"),
+        ("<a>1</>", "UPS002", 2, "</", "closing tag without a name"),
+        ("<<a>1</a>", "UPS002", 2, "<<", "two < in a row"),
         ("<a> ]]> </a>", "UPS002", 2, "]]>", "not allowed"),
     ],
 )

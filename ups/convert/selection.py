@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ups.archive import Archive, ArchiveError, GridField, Variable
-from ups.archive.index import Timestep
+from ups.archive import Archive, ArchiveError, GridField, Timestep, Variable
 
 _SITES = ("p.", "g.", "c.")
 

@@ -104,7 +104,7 @@ def corner_load(
 
 @inline
 def spread(grid: GridIndex, x: Components, f: Components, nodal_force: Any) -> None:
-    """Share a force among the eight nodes around a point by trilinear weights; nodes not stored lose theirs."""
+    """Share a force among the eight nodes around a point by trilinear weights; nodes not stored lose it."""
     qx = (x.x - grid.anchor[0]) / grid.spacing[0]
     qy = (x.y - grid.anchor[1]) / grid.spacing[1]
     qz = (x.z - grid.anchor[2]) / grid.spacing[2]

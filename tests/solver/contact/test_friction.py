@@ -9,6 +9,7 @@ from contact_scenes import block, make_grid, place
 from solver.contact.approach import ApproachContact
 from solver.contact.friction_bard import FrictionBard
 from solver.contact.normals import SurfaceFields, surface_fields
+from solver.nodal import EMPTY_MASS
 
 
 def random_surface(s, seed=5):
@@ -142,9 +143,10 @@ def test_surface_fields_agree_with_sums_over_particles(scene):
     )
     normal = np.einsum("npk,p->nk", gradient, particles.mass)
     size = np.linalg.norm(normal, axis=1)
-    held = size > 1e-8
+    shared = (s.nodal.mass > EMPTY_MASS).all(axis=0)
+    held = shared & (size > 1e-8)
     np.testing.assert_allclose(surface.normal[1, held], normal[held] / size[held, None], atol=1e-12)
-    massive = s.nodal.mass[1] > 1e-8
+    massive = shared & (s.nodal.mass[1] > 1e-8)
     position = (weights @ (particles.mass[:, None] * particles.position)) / s.nodal.mass[1][:, None]
     np.testing.assert_allclose(surface.position[1, massive], position[massive], atol=1e-12)
     np.testing.assert_allclose(surface.traction[1, held], 3.0 * weights.sum(axis=1)[held], rtol=1e-12)
@@ -167,7 +169,7 @@ def test_axisymmetric_normals_weight_density_with_gradients_per_cell(scene):
     density = particles.mass / particles.volume
     normal = np.stack([gradient_x @ density, gradient_y @ density], axis=1)
     size = np.linalg.norm(normal, axis=1)
-    held = size > 1e-8
+    held = (s.nodal.mass > EMPTY_MASS).all(axis=0) & (size > 1e-8)
     np.testing.assert_allclose(surface.normal[0, held, :2], normal[held] / size[held, None], atol=1e-12)
 
 
@@ -176,12 +178,20 @@ def test_symmetry_is_applied_to_normals_before_they_become_unit_vectors(scene):
         def apply_symmetry(self, vectors, material):
             vectors[:, 2] = 0.0
 
-    s = two_blocks(scene, ((0, 0, 0), (0, 0, 0)), boundary_conditions=NoZ())
+    s = two_blocks(scene, ((0, 0, 0), (0, 0, 0)), boundary_conditions=NoZ(), colinear_normals=False)
     normal = s.once(surface_fields).normal
     assert (normal[..., 2] == 0.0).all()
     size = np.linalg.norm(normal, axis=2)
     assert (np.isclose(size, 1.0) | (size < 1e-15)).all()
     assert np.isclose(size, 1.0).any()
+
+
+def test_nodes_of_one_material_have_no_surface(scene):
+    s = two_blocks(scene, ((0, 0, 0), (0, 0, 0)), stress=1.0)
+    surface = s.once(surface_fields)
+    alone = ~(s.nodal.mass > EMPTY_MASS).all(axis=0)
+    assert not surface.normal[:, alone].any()
+    assert not surface.traction[:, alone].any()
 
 
 def test_surface_fields_are_made_once_a_step(scene):
@@ -197,7 +207,7 @@ def test_periodic_images_count_for_the_nodes_they_repeat(scene):
         low = np.array(grid.anchor)
         particles = block(grid, (start, 1, 1), (start + 2, 2, 2))
         particles.position[:, 0] = low[0] + (particles.position[:, 0] - low[0]) % 4.0
-        s = scene(1, grid, particles=[particles], colinear_normals=False)
+        s = scene(2, grid, particles=[particles, particles], colinear_normals=False)
         s.nodal.mass[:] = 1.0
         fields = s.once(surface_fields)
         box = grid.as_box(fields.normal[0])[1:5, 1:, 1:]
@@ -211,7 +221,7 @@ def test_mean_positions_at_a_periodic_seam_lie_beside_the_node(scene):
     grid = make_grid((4, 4, 4), (1.0, 1.0, 1.0), periodic=(1, 0, 0))
     low = np.array(grid.anchor)
     particles = block(grid, (3.5, 1, 1), (4.0, 2, 2))
-    s = scene(1, grid, particles=[particles])
+    s = scene(2, grid, particles=[particles, particles])
     weight = (1.0 - 0.25) * particles.mass.sum() / 4.0
     s.nodal.mass[:] = weight
     seam = grid.flat(0, 1, 1)

@@ -104,6 +104,14 @@ def test_normal_only_takes_away_what_goes_against_the_normal(scene):
     np.testing.assert_array_equal(s.nodal.velocity_star[0], before[0])
 
 
+def test_with_normal_only_the_master_follows_its_profile(scene, tmp_path):
+    s = scene()
+    law = with_profile(tmp_path, "0 1 2 3\n1 1 2 3\n", materials=(1,), normal_only=True)
+    law.apply(2, s)
+    velocity = s.nodal.velocity_star[0, holds_master(s)]
+    np.testing.assert_array_equal(velocity, np.broadcast_to([1.0, 2.0, 3.0], velocity.shape))
+
+
 def test_reactions_are_the_internal_forces_of_the_materials_acted_on(scene):
     s = scene()
     before = s.nodal.velocity_star.copy()

@@ -122,7 +122,7 @@ def test_only_surface_particles_are_loaded():
 
 
 def test_a_pressure_turns_with_the_particle_if_asked():
-    # F = R U with R a quarter turn about z: the force along x becomes one along y, the stretch U does nothing.
+    # F = R U with R a quarter turn about z: the force along x becomes one along y; U has no effect.
     grid = make_grid()
     face = Box(min=(0.49, 0.2, 0.2), max=(0.51, 0.5, 0.5))
     cube = body(Box(min=(0.2, 0.2, 0.2), max=(0.5, 0.5, 0.5)), grid)

@@ -46,7 +46,7 @@ def test_stress_is_the_derivative_of_the_energy(scale):
 def test_stiffens_before_the_chains_lock():
     gamma = np.array([0.1, 2.5])
     shear = [Driver(RUBBER).advance([[1, g, 0], [0, 1, 0], [0, 0, 1]])[0, 1] for g in gamma]
-    assert shear[1] / gamma[1] > 1.5 * shear[0] / gamma[0]
+    assert shear[1] / gamma[1] > 1.3 * shear[0] / gamma[0]
 
 
 def test_initial_sound_speed():
