@@ -32,6 +32,8 @@ IntVector = tuple[int, int, int]
 
 REQUIRED: Any = dataclasses.MISSING
 
+Class = TypeVar("Class", bound=type)
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -48,6 +50,9 @@ class Parameter:
     attribute : True for an XML attribute, False for a child element.
     source : where the value or its equation comes from.
     ignored : why the value is read and has no effect, if so.
+    unsupported : what this program would need to run a deck that gives the value, if it does not run it.
+    repeated : True for a tag that may be given several times, each with one value of the tuple.
+    tag_attributes : attributes that the tag may carry besides its value.
     """
 
     meaning: str
@@ -62,6 +67,54 @@ class Parameter:
     attribute: bool = False
     source: str = ""
     ignored: str = ""
+    unsupported: str = ""
+    repeated: bool = False
+    tag_attributes: tuple[str, ...] = ()
+
+
+class Section:
+    """Base of records that are declared by plain annotations: sections and models that are known, but not run.
+
+    A subclass needs no decorator and costs nothing until a deck names it; the tags read are its attributes.
+    """
+
+    def __init__(self, **values: Any) -> None:
+        self.__dict__.update(values)
+
+
+@dataclass(frozen=True)
+class TagGroup:
+    """Tags (or attributes) of a record that a deck gives together, or of which it gives exactly one."""
+
+    names: tuple[str, ...]
+    together: bool
+    needed: bool = True
+
+
+def one_of(*names: str, needed: bool = True) -> Callable[[Class], Class]:
+    """Class decorator: of these tags or attributes a deck gives exactly one (at most one if not ``needed``)."""
+    return _grouped(TagGroup(names, together=False, needed=needed))
+
+
+def all_or_none_of(*names: str) -> Callable[[Class], Class]:
+    """Class decorator: of these tags or attributes a deck gives all or none."""
+    return _grouped(TagGroup(names, together=True))
+
+
+def _grouped(group: TagGroup) -> Callable[[Class], Class]:
+    def add(cls: Class) -> Class:
+        _GROUPS[cls] = (group, *_GROUPS.get(cls, ()))
+        return cls
+
+    return add
+
+
+_GROUPS: dict[type, tuple[TagGroup, ...]] = {}
+
+
+def groups(record: type) -> tuple[TagGroup, ...]:
+    """The groups of tags of a record, its bases' included."""
+    return tuple(group for cls in record.__mro__ for group in _GROUPS.get(cls, ()))
 
 
 @dataclass(frozen=True)
@@ -70,6 +123,21 @@ class SubModel:
 
     family: str
     many: bool = False
+
+
+@dataclass(frozen=True)
+class SectionOf:
+    """Marks a field that holds a section declared elsewhere, ``"module:Class"``, loaded where a deck gives it."""
+
+    where: str
+    many: bool = False
+
+    @property
+    def record(self) -> type:
+        """The record class."""
+        module, _, name = self.where.partition(":")
+        record: type = getattr(importlib.import_module(module), name)
+        return record
 
 
 @dataclass
@@ -106,6 +174,18 @@ class Family:
             if not module.ispkg:
                 importlib.import_module(f"{self.package}.{module.name}")
 
+    def find(self, name: str) -> type | None:
+        """The record class of a model by its name, old or new; only the modules that may declare it are loaded."""
+        if not self._loaded and name not in self._models:
+            plain = name.replace("_", "").lower()
+            package = importlib.import_module(self.package)
+            for module in pkgutil.iter_modules(package.__path__):
+                if not module.ispkg and module.name.replace("_", "") == plain:
+                    importlib.import_module(f"{self.package}.{module.name}")
+        if name in self._models:
+            return self._models[name]
+        return self.models.get(self.old_names.get(name, name))
+
     @property
     def models(self) -> dict[str, type]:
         """The record class of every model, by the name a deck uses today."""
@@ -127,9 +207,6 @@ def family(name: str, tag: str, package: str, key: str, meaning: str, old_tags: 
     """Declare a family of models; each module of ``package`` registers its models with :func:`model`."""
     FAMILIES[name] = Family(name, tag, package, key, meaning, old_tags)
     return FAMILIES[name]
-
-
-Class = TypeVar("Class", bound=type)
 
 
 def model(family_name: str, *names: str, old_names: tuple[str, ...] = ()) -> Callable[[Class], Class]:
@@ -159,6 +236,26 @@ class FieldInfo:
     parameter: Parameter
     sub_model: SubModel | None
     default: Any
+    section: SectionOf | None = None
+
+    @property
+    def record(self) -> type | None:
+        """The record class of a field that holds one section, or many of one kind; None for values."""
+        if self.section is not None:
+            return self.section.record
+        hint = without_optional(self.type)
+        if get_origin(hint) is tuple and get_args(hint)[-1] is Ellipsis:
+            hint = get_args(hint)[0]
+        return hint if is_record(hint) else None
+
+    @property
+    def many(self) -> bool:
+        """Whether a deck may give the field several times."""
+        if self.section is not None:
+            return self.section.many
+        if self.sub_model is not None:
+            return self.sub_model.many
+        return self.parameter.repeated or (self.record is not None and get_origin(self.type) is tuple)
 
     @property
     def tag(self) -> str:
@@ -180,6 +277,10 @@ def _defaults(record: type) -> Iterator[tuple[str, Any]]:
                 yield item.name, item.default_factory()
             else:
                 yield item.name, item.default
+    elif issubclass(record, Section):
+        names = {name: None for cls in reversed(record.__mro__) for name in cls.__dict__.get("__annotations__", ())}
+        for name in names:
+            yield name, getattr(record, name, REQUIRED)
     else:
         given = getattr(record, "_field_defaults", {})
         for name in getattr(record, "_fields", ()):
@@ -198,12 +299,13 @@ def fields(record: type) -> tuple[FieldInfo, ...]:
         inner, *marks = get_args(hint)
         parameter = next((m for m in marks if isinstance(m, Parameter)), None)
         sub_model = next((m for m in marks if isinstance(m, SubModel)), None)
+        section = next((m for m in marks if isinstance(m, SectionOf)), None)
         if parameter is None and sub_model is None:
             continue
         if parameter is None and sub_model is not None:
             parameter = Parameter(FAMILIES[sub_model.family].meaning)
         assert parameter is not None
-        found.append(FieldInfo(name, inner, parameter, sub_model, default))
+        found.append(FieldInfo(name, inner, parameter, sub_model, default, section))
     return tuple(found)
 
 
@@ -216,7 +318,7 @@ def without_optional(hint: Any) -> Any:
 
 
 def is_record(hint: Any) -> bool:
-    """Whether a type is a record class: a dataclass or a NamedTuple with declared fields."""
+    """Whether a type is a record class: a dataclass, a NamedTuple or a Section."""
     if not isinstance(hint, type) or typing.get_origin(hint) is not None:
         return False
-    return dataclasses.is_dataclass(hint) or hasattr(hint, "_fields")
+    return issubclass(hint, Section) or dataclasses.is_dataclass(hint) or hasattr(hint, "_fields")

@@ -32,6 +32,10 @@ class DivergedError(RuntimeError):
     """A value that is not a finite number turned up; the message names the material and the step."""
 
 
+class NodesTooFastError(RuntimeError):
+    """A node would cross more than half a cell; nothing has moved yet, so the step can be repeated with less."""
+
+
 @dataclass
 class Body:
     """The particles of one material of a deck, with all that acts on them alone.
@@ -76,6 +80,8 @@ class Simulation:
     Attributes
     ----------
     reductions : (label, material or -1) -> value of the last step, e.g. ("KineticEnergy", -1).
+    face_forces : force of the last step on each face of ``boundary_traction_faces``; contact laws go by it, so a
+        checkpoint has to keep it.
     before_step : calls made at the start of each step with (simulation, dt), in order: external loads.
     after_boundary_conditions : calls made once v* and a are known: prescribed motion.
     after_step : calls made before particles are sorted out: inserted particles.
@@ -109,6 +115,7 @@ class Simulation:
         self._projected_temperature = np.zeros((len(self.bodies), count))
         self._smoothed = np.zeros((count if self.flags.XPIC2 else 0, 3))
         self._images = _periodic_images(self.grid)
+        self._image_nodes = np.unique(self._images[1])
         self._owned_nodes = _owned_nodes(self.grid)
         self._owned_cells = _owned_cells(self.grid)
         self._weight = self.boundary_conditions.node_to_cell_weight()
@@ -116,7 +123,7 @@ class Simulation:
             self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
         )
         self._cell_stretch = np.zeros(len(self._owned_cells))
-        self._face_forces: dict[str, tuple[float, float, float]] = {}
+        self.face_forces: dict[str, tuple[float, float, float]] = {}
 
     # ---- the time step -------------------------------------------------------------------------------------
 
@@ -145,6 +152,8 @@ class Simulation:
         ------
         DivergedError
             when a stress or position is no longer a finite number.
+        NodesTooFastError
+            when the flags ask for it and a node is too fast for this step; the particles are as they were.
         """
         self.reductions.clear()
         for action in self.before_step:
@@ -158,6 +167,9 @@ class Simulation:
         self._symmetric_forces()
         for m, body in enumerate(self.bodies):
             self._accelerate(m, body, dt)
+        if self.flags.restart_on_large_nodal_velocity and self.too_fast(dt):
+            self.face_forces = dict(scene.face_forces)
+            raise NodesTooFastError(f"step {self.step_number + 1}: a node would cross half a cell in {dt:g}")
         for law in self.contact_laws:
             law.apply(2, scene)
         self._impose_velocities(dt)
@@ -256,8 +268,23 @@ class Simulation:
             owned_nodes=self._owned_nodes,
             dt=dt,
             time=self.time,
-            face_forces=dict(self._face_forces),
+            face_forces=dict(self.face_forces),
         )
+
+    def stress_at_nodes(self, m: int) -> Array:
+        """The stress of a body at the nodes, sum_p V_p sigma_p S_ip / V_i, (N, 3, 3); zero for a rigid body.
+
+        To be called before particles move, as ``after_boundary_conditions`` are.
+        """
+        from solver.nodal_stress import project_stress
+
+        body = self.bodies[m]
+        if body.rigid or not self._is_active(body):
+            return np.zeros((self.grid.number_of_nodes, 3, 3))
+        sums = project_stress(self, body)
+        if len(self._images[0]):
+            kernels.fold_images(sums, *self._images)
+        return (sums / self.nodal.volume[m][:, None]).reshape(-1, 3, 3)
 
     # ---- on the grid ---------------------------------------------------------------------------------------
 
@@ -278,9 +305,9 @@ class Simulation:
         if body.transmits_force:
             nodal.acceleration[m] = 0.0
             nodal.velocity_star[m] = nodal.velocity[m]
-        self._add("TotalMass", body, float(nodal.mass[m].sum() - nodal.mass[m][self._images[1]].sum()))
-        force = nodal.external_force[m]
-        self._add("SumTransmittedForce", body, force.sum(axis=0) - force[self._images[1]].sum(axis=0))
+        mass, force, twins = nodal.mass[m], nodal.external_force[m], self._image_nodes
+        self._add("TotalMass", body, float(mass.sum() - mass[twins].sum()))
+        self._add("SumTransmittedForce", body, force.sum(axis=0) - force[twins].sum(axis=0))
 
     def too_fast(self, dt: float) -> bool:
         """Whether a node inside the domain would cross half a cell in the last step's dt."""
@@ -428,7 +455,7 @@ class Simulation:
                     force -= self.nodal.internal_force[m][nodes].sum(axis=0)
                 volume += float(self.nodal.volume[m][nodes].sum())
             self.reductions["BndyForce_" + name, -1] = force
-            self._face_forces[name] = (float(force[0]), float(force[1]), float(force[2]))
+            self.face_forces[name] = (float(force[0]), float(force[1]), float(force[2]))
             axis = FACES.index(face) // 2
             self.reductions["BndyContactCellArea_" + name, -1] = 2.0 * volume / self.grid.spacing[axis]
 

@@ -70,6 +70,9 @@ Reinitialize: TypeAlias = Annotated[
         ignored="components are not switched during a run",
     ),
 ]
+OldFailure: TypeAlias = Annotated[
+    float, Parameter("constant of a failure model", ignored="the model was taken out of Uintah")
+]
 
 
 class PlasticState(NamedTuple):
@@ -104,6 +107,8 @@ class CompNeoHook(NamedTuple):
     initial_pressure: InitialPressure = 0.0
     useModifiedEOS: ModifiedEos = False
     reinitializeCMData: Reinitialize = False
+    strain_limit: OldFailure = 0.0
+    reduction_factor: OldFailure = 0.0
 
     @property
     def State(self) -> type:  # noqa: N802 - the class attribute of other models, here decided by usePlasticity
@@ -138,6 +143,8 @@ class CompNeoHookPlastic(NamedTuple):
     initial_pressure: InitialPressure = 0.0
     useModifiedEOS: ModifiedEos = False
     reinitializeCMData: Reinitialize = False
+    strain_limit: OldFailure = 0.0
+    reduction_factor: OldFailure = 0.0
 
     @property
     def State(self) -> type:  # noqa: N802 - the class attribute of other models, here decided by usePlasticity

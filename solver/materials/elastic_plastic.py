@@ -42,6 +42,8 @@ from solver.materials.specific_heat.constant_specific_heat import ConstantSpecif
 from solver.materials.stability import is_checked, localizes, tangent_modulus
 from solver.materials.stability.no_check import NoCheck
 from solver.materials.yield_condition import hardening_term, yield_normal, yield_value
+from solver.materials.yield_condition.gurson import Gurson
+from solver.materials.yield_condition.rousselier import Rousselier
 from solver.particles import Array, Particles, StateVariable
 from solver.tensor import (
     Tensor,
@@ -164,6 +166,13 @@ class ElasticPlastic(NamedTuple):
     def State(self) -> type:  # noqa: N802 - the class attribute of other models
         """The arrays of a particle set, with those of the Maxwell elements."""
         return state_class(len(getattr(self.deviatoric_stress_model, "tau", ())))
+
+    def faults(self) -> list[tuple[str, str]]:
+        """Fields that do not go together, each with what is wrong."""
+        porous = isinstance(self.yield_condition, Gurson | Rousselier)
+        if porous and isinstance(self.plastic_convergence_algo, RadialReturn):
+            return [("plastic_convergence_algo", "a yield condition with porosity needs biswajit")]
+        return []
 
 
 @cache

@@ -33,6 +33,9 @@ class HypoElastic(NamedTuple):
     G: Annotated[float, Parameter("shear modulus", unit="Pa", ge=0.0)]
     K: Annotated[float, Parameter("bulk modulus", unit="Pa", gt=0.0)]
     alpha: Annotated[float, Parameter("coefficient of linear thermal expansion", unit="1/K")] = 0.0
+    useModifiedEOS: Annotated[
+        bool, Parameter("choice of an equation of state", ignored="this material has but one")
+    ] = False
 
 
 @initial_sound_speed.register

@@ -22,7 +22,7 @@ from solver.materials.constitutive import (
 )
 from solver.materials.rigid import NO_WAVES
 from solver.particles import Array, Particles, StateVariable
-from solver.tensor import Tensor, determinant, isotropic, trace
+from solver.tensor import determinant, isotropic, trace
 
 _SERIES = "deformation gradients follow the time integration of the run"
 
@@ -74,6 +74,10 @@ class JWLppMPM(NamedTuple):
         bool, Parameter("exponential series for the deformation gradient", ignored=_SERIES)
     ] = False
     num_taylor_terms: Annotated[int, Parameter("terms of that series", ignored=_SERIES)] = 10
+
+    jwl_rho0: Annotated[
+        float, Parameter("density", unit="kg/m^3", ignored="the density of the material is taken")
+    ] = 0.0
 
     @property
     def State(self) -> type:  # noqa: N802 - a class, like the attribute that other records may have
@@ -176,35 +180,34 @@ def burn(model: JWLppMPM, old: Burn, J_old: float, J: float, dt: float) -> Burn:
     return new
 
 
-@inline
-def inert(stress: Tensor, localized: int) -> StressUpdate:
-    """The update of a particle that has failed or is taken out."""
-    return StressUpdate(stress, NO_WAVES, 0.0, 0.0, 0.0, int(localized))
-
-
 @implements(stress_update, JWLppMPM)
 def jwlpp_stress(
     model: JWLppMPM, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
-    """Burn, then the pressure of the mixture; the sound speed is that of the explosive."""
-    if point.localized != 0:
-        return inert(point.stress, point.localized)
+    """Burn, then the pressure of the mixture; the sound speed is that of the explosive.
+
+    Failed particles keep their stress, inverted ones are taken out.
+    """
+    stress, localized = point.stress, point.localized
+    sound_speed, viscous_pressure = NO_WAVES, 0.0
     J = determinant(point.deformation_gradient)
-    if not J > 0.0:
-        return inert(isotropic(0.0), DELETE)
-    density = material.density / J
-    old = Burn(state.burned[p], -trace(point.stress) / 3.0)
-    new = burn(model, old, determinant(point.deformation_gradient_old), J, step.dt)
-    state.burned[p] = new.fraction
-    state.burned_in_step[p] = new.fraction - old.fraction
-    compressibility = model.murnaghan_K * material.density
+    if localized == 0 and J > 0.0:
+        density = material.density / J
+        old = Burn(state.burned[p], -trace(stress) / 3.0)
+        new = burn(model, old, determinant(point.deformation_gradient_old), J, step.dt)
+        state.burned[p] = new.fraction
+        state.burned_in_step[p] = new.fraction - old.fraction
+        stress = isotropic(-new.pressure)
+        sound_speed = math.sqrt(J ** (1.0 - model.murnaghan_n) / (model.murnaghan_K * material.density))
+        bulk_speed = math.sqrt(1.0 / (model.murnaghan_K * density))
+        viscous_pressure = artificial_viscosity(step, trace(point.velocity_gradient), bulk_speed, density)
+    elif localized == 0:
+        stress, localized = isotropic(0.0), DELETE
     return StressUpdate(
-        stress=isotropic(-new.pressure),
-        sound_speed=math.sqrt(J ** (1.0 - model.murnaghan_n) / compressibility),
+        stress=stress,
+        sound_speed=sound_speed,
         strain_energy=0.0,
         heating_rate=0.0,
-        artificial_pressure=artificial_viscosity(
-            step, trace(point.velocity_gradient), math.sqrt(1.0 / (model.murnaghan_K * density)), density
-        ),
-        localized=int(point.localized),
+        artificial_pressure=viscous_pressure,
+        localized=localized,
     )

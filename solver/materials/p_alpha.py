@@ -65,6 +65,10 @@ class PAlpha(NamedTuple):
     yield_stress: Annotated[float, Parameter("yield stress in tension", unit="Pa", ge=0.0)] = 9.0e99
     hardening_modulus: Annotated[float, Parameter("slope of yield stress over strain", unit="Pa")] = 0.0
 
+    alpha0: Annotated[
+        float, Parameter("distension at the start", ignored="it is rhoS over the density of the material")
+    ] = 0.0
+
     @property
     def State(self) -> type:  # noqa: N802 - a class, like the attribute that other records may have
         """The arrays of a particle set."""

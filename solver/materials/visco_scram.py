@@ -59,6 +59,11 @@ EosConstant: TypeAlias = Annotated[
 ]
 
 
+HotSpotConstant: TypeAlias = Annotated[
+    float, Parameter("constant of the hot-spot model", ignored="only viscoSCRAM_hs computes hot spots")
+]
+
+
 class ViscoScramState(NamedTuple):
     """What a particle remembers."""
 
@@ -146,6 +151,13 @@ class ViscoScram(NamedTuple):
     R2: EosConstant = 0.0
     om: EosConstant = 0.0
     Cv: EosConstant = 0.0
+    rho0: EosConstant = 0.0
+    Chi: HotSpotConstant = 0.0
+    delH: HotSpotConstant = 0.0
+    dynamic_coeff_friction: HotSpotConstant = 0.0
+    EoverR: HotSpotConstant = 0.0
+    volfracHE: HotSpotConstant = 0.0
+    Z: HotSpotConstant = 0.0
 
     @property
     def State(self) -> type:  # noqa: N802 - a class, like the attribute that other records may have

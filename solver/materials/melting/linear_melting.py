@@ -28,6 +28,12 @@ class LinearMelting(NamedTuple):
     Gamma_0: Annotated[float, Parameter("Grueneisen's gamma in the reference state")] = NOT_GIVEN
     K_T: Annotated[float, Parameter("isothermal bulk modulus", unit="Pa")] = NOT_GIVEN
 
+    def faults(self) -> list[tuple[str, str]]:
+        """Fields that do not go together, each with what is wrong."""
+        if self.a == NOT_GIVEN and self.b == NOT_GIVEN and self.Gamma_0 == NOT_GIVEN:
+            return [("a", "give a, b or Gamma_0: without one the melting temperature is not linear in anything")]
+        return []
+
 
 @implements(melting_temperature, LinearMelting)
 def _(model: LinearMelting, state: PlasticityState) -> float:

@@ -168,7 +168,11 @@ def zerilli_armstrong(m, s):
 def zerilli_armstrong_polymer(m, s):
     root, rate = np.sqrt(max(-s.mean_stress, 0)), np.log(s.plastic_strain_rate)
     omega = max(m.omega_a + m.omega_b * rate + m.omega_p * root, 0)
-    B = m.B_pa * (1 + m.B_pb * root) ** m.B_pn * np.exp(-(m.beta_0 - m.beta_1 * rate) * (s.temperature - m.T_0))
+    B = (
+        m.B_pa
+        * (1 + m.B_pb * root) ** m.B_pn
+        * np.exp(-(m.beta_0 - m.beta_1 * rate) * (s.temperature - m.T_0))
+    )
     B_0 = m.B_0pa * (1 + m.B_0pb * root) ** m.B_0pn
     B_0 *= np.exp(-(m.alpha_0 - m.alpha_1 * rate) * (s.temperature - m.T_0))
     return m.sigma_g + B + B_0 * np.sqrt(omega * s.plastic_strain)
@@ -253,7 +257,7 @@ def test_every_model_is_tested():
 
 @pytest.mark.parametrize("name", MODELS)
 def test_the_flow_stress_is_that_of_the_papers_equation(name):
-    # iterations end early: that of the thermal stress of Steinberg and Lund at zero where it is next to nothing
+    # iterations end early: that of Steinberg and Lund's thermal stress at zero where it is nearly nothing
     rtol = {"ste": 1e-4, "mts": 1e-6}.get(name[:3], 1e-11)
     computed = [flow_stress(MODELS[name], s) for s in STATES]
     np.testing.assert_allclose(computed, [REFERENCES[name](MODELS[name], s) for s in STATES], rtol=rtol)

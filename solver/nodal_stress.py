@@ -1,0 +1,125 @@
+"""Stress at the nodes and tractions on faces of the domain: recorded for output, never used by the step.
+
+Both belong to the particles as they are before they move, so they hook into
+``Simulation.after_boundary_conditions``.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.grid import FACES, Grid, GridIndex
+from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
+from solver.jit import kernel
+from solver.particles import Particles
+from solver.tensor import tensor_at
+
+if TYPE_CHECKING:
+    from solver.simulation import Body, Simulation
+
+Array = NDArray[Any]
+
+NO_TRACTION = 1.0e-12
+"""Squared normal traction up to which the contact area is not found from force and traction."""
+
+
+class NodalStress:
+    """The stress of each material at the nodes (Uintah's g.stressFS), taken in the steps where it is wanted.
+
+    Attributes
+    ----------
+    wanted : whether the coming step is to be recorded.
+    values : (M, N, 3, 3) as last recorded.
+    """
+
+    def __init__(self) -> None:
+        self.wanted = False
+        self.values: Array = np.zeros((0, 0, 3, 3))
+
+    def attach(self, simulation: Simulation) -> None:
+        """Record from now on."""
+        count = simulation.grid.number_of_nodes
+        self.values = np.zeros((len(simulation.bodies), count, 3, 3))
+        simulation.after_boundary_conditions.append(self._record)
+
+    def _record(self, simulation: Simulation, dt: float) -> None:
+        if self.wanted:
+            for m in range(len(simulation.bodies)):
+                self.values[m] = simulation.stress_at_nodes(m)
+
+
+class FaceTractions:
+    """Mean traction and contact area of the faces that ``boundary_traction_faces`` names, in every step.
+
+    The traction of a face is sum_i sigma_i . n A_i / sum_i A_i over its nodes i and all materials, with the
+    outward normal n and A_i = 2 V_i / h (half of the volume of a node at the edge is missing). The contact area
+    is the normal force over the normal traction, or sum_i A_i where the traction is next to nothing.
+    """
+
+    def __init__(self, faces: tuple[str, ...]) -> None:
+        self.faces = faces
+
+    def attach(self, simulation: Simulation) -> None:
+        """Record from now on."""
+        simulation.after_boundary_conditions.append(self._record)
+
+    def _record(self, simulation: Simulation, dt: float) -> None:
+        stresses = [simulation.stress_at_nodes(m) for m in range(len(simulation.bodies))]
+        for name in self.faces:
+            self._record_face(simulation, name, stresses)
+
+    def _record_face(self, simulation: Simulation, name: str, stresses: list[Array]) -> None:
+        face = name.replace("minus", "-").replace("plus", "+")
+        axis, outward = FACES.index(face) // 2, 1.0 if face.endswith("+") else -1.0
+        grid, reductions = simulation.grid, simulation.reductions
+        traction = np.zeros(3)
+        for m, stress in enumerate(stresses):
+            node_area = 2.0 * on_face(grid, simulation.nodal.volume[m], face) / grid.spacing[axis]
+            normal_stress = outward * on_face(grid, stress, face)[..., axis]
+            traction += (normal_stress * node_area[..., None]).sum(axis=(0, 1))
+        area = reductions["BndyContactCellArea_" + name, -1]
+        force = reductions["BndyForce_" + name, -1]
+        if area > 0.0:
+            traction /= area
+        if traction[axis] ** 2 > NO_TRACTION:
+            area = force[axis] / traction[axis]
+        reductions["BndyTraction_" + name, -1] = traction
+        reductions["BndyContactArea_" + name, -1] = area
+
+
+def on_face(grid: Grid, nodal: Array, face: str) -> Array:
+    """The values of a nodal field (N, ...) on a face of the bounding box, extra nodes left out: (a, b, ...)."""
+    axis = FACES.index(face) // 2
+    box = grid.as_box(nodal)
+    ranges: list[Any] = [slice(g, g + n + 1) for g, n in zip(grid.ghost, grid.cells, strict=True)]
+    ranges[axis] = grid.ghost[axis] + (grid.cells[axis] if face.endswith("+") else 0)
+    return np.asarray(box[tuple(ranges)])
+
+
+def project_stress(simulation: Simulation, body: Body) -> Array:
+    """The sum over particles V_p sigma_p S_ip at the nodes: (N, 9)."""
+    sums = np.zeros((simulation.grid.number_of_nodes, 9))
+    scatter_stress(simulation.interpolator, simulation.grid.index, body.particles, sums)
+    return sums
+
+
+@kernel
+def scatter_stress(interpolator: Any, grid: GridIndex, particles: Particles, sums: Any) -> None:
+    """Add V_p sigma_p S_ip of each particle to the nodes (N, 9), matrices row by row."""
+    nodes = np.empty(MOST_NODES, np.int64)
+    weights = np.empty(MOST_NODES)
+    gradients = np.empty((MOST_NODES, 3))
+    for p in range(particles.mass.shape[0]):
+        x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
+        domain = particle_domain(
+            interpolator, tensor_at(particles.deformation_gradient, p), tensor_at(particles.size, p)
+        )
+        count = shape_functions(interpolator, grid, x, y, z, domain, nodes, weights, gradients)
+        for n in range(count):
+            share = particles.volume[p] * weights[n]
+            for i in range(3):
+                for j in range(3):
+                    sums[nodes[n], 3 * i + j] += share * particles.stress[p, i, j]

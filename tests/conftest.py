@@ -1,0 +1,25 @@
+"""What all tests share: reference material beside the checkout, and settings of the tools.
+
+Compiled kernels are kept where ``solver.jit`` puts them, a folder named after the state of the sources. The first
+import settles that folder in the environment, so that all tests and the programs that they start share it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("project", deadline=None, derandomize=True, max_examples=50)
+settings.load_profile("project")
+
+SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder of reference runs, decks and archives; tests that ask for it are skipped where it is absent."""
+    if not SHARED.is_dir():
+        pytest.skip("needs the folder ../shared")
+    return SHARED

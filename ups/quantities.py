@@ -1,0 +1,226 @@
+"""What a deck can save: Uintah's labels and types, and where a simulation keeps the values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.contact.motion import PrescribedMotion
+from solver.materials.constitutive import state_record
+from solver.particles import Particles, StateVariable, state_variables
+from ups.archive import Variable
+from ups.archive.variables import GLOBAL_MATERIAL, NODE, PARTICLE, REDUCTION
+from ups.deck import Specification
+
+if TYPE_CHECKING:
+    from solver.grid import Grid
+    from solver.simulation import Simulation
+
+Array = NDArray[Any]
+
+POSITION, IDENTITY, STRESS_AT_NODES = "p.x", "p.particleID", "g.stressFS"
+ACCUMULATED = "AccStrainEnergy"
+"""The sum of StrainEnergy over the steps, which is kept by whoever writes it."""
+
+NODAL_FIELDS: dict[str, tuple[str, str]] = {
+    "g.mass": ("mass", "double"),
+    "g.volume": ("volume", "double"),
+    "g.velocity": ("velocity", "Vector"),
+    "g.temperature": ("temperature", "double"),
+    "g.velocity_star": ("velocity_star", "Vector"),
+    "g.acceleration": ("acceleration", "Vector"),
+    "g.internalforce": ("internal_force", "Vector"),
+    "g.externalforce": ("external_force", "Vector"),
+    "g.temperatureRate": ("temperature_rate", "double"),
+}
+"""Label -> (field of NodalFields, element type), one value a material."""
+
+SUMS_BY_MATERIAL: dict[str, str] = {
+    "KineticEnergy": "double",
+    "ThermalEnergy": "double",
+    "TotalMass": "double",
+    "TotalMomentum": "Vector",
+    "CenterOfMassPosition": "Vector",
+    "SumTransmittedForce": "Vector",
+}
+"""Sums over the particles of a material; of all materials together too, and only so where there is one."""
+
+SUMS_OVER_ALL: dict[str, str] = {
+    "StrainEnergy": "double",
+    ACCUMULATED: "double",
+    "TotalVolumeDeformed": "double",
+}
+REACTIONS: dict[str, str] = {"RigidReactionForce": "Vector", "RigidReactionTorque": "Vector"}
+ON_FACES: dict[str, str] = {"BndyForce": "Vector", "BndyContactCellArea": "double"}
+TRACTIONS: dict[str, str] = {"BndyTraction": "Vector", "BndyContactArea": "double"}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A variable on particles or nodes that a deck can save.
+
+    Attributes
+    ----------
+    variable : how an archive declares it.
+    materials : indices that it has values for; for a nodal variable the number of materials stands for all
+        materials together, as in Uintah.
+    values : from the simulation and one of the materials to the values, as ``ups.archive.Fields`` takes them.
+    initially : whether it is known before the first step.
+    """
+
+    variable: Variable
+    materials: tuple[int, ...]
+    values: Callable[[Simulation, int], Array]
+    initially: bool = True
+
+
+@dataclass(frozen=True)
+class Sum:
+    """A value a step, for each of some materials (-1 for all together)."""
+
+    variable: Variable
+    materials: tuple[int, ...]
+
+
+def particle_quantities(specification: Specification) -> dict[str, Quantity]:
+    """Everything that particles carry, by label: what all have, and what their materials' models add."""
+    models = [m.constitutive_model for m in specification.MaterialProperties.MPM.material]
+    found = {
+        variable.label: Quantity(
+            Variable(variable.label, PARTICLE, variable.element), tuple(range(len(models))), _of_particles(name)
+        )
+        for name, variable in state_variables(Particles).items()
+        if variable.label
+    }
+    for label, (variable, names) in _model_states(models).items():
+        if label not in found:
+            declared = Variable(label, PARTICLE, variable.element)
+            found[label] = Quantity(declared, tuple(names), _of_state(names))
+    found["p.scalefactor"] = Quantity(
+        Variable("p.scalefactor", PARTICLE, "Matrix3"), tuple(range(len(models))), _particle_edges, False
+    )
+    return found
+
+
+def _model_states(models: Iterable[Any]) -> dict[str, tuple[StateVariable, dict[int, str]]]:
+    """Label -> declaration, and material -> field of its state, for what models keep on particles."""
+    found: dict[str, tuple[StateVariable, dict[int, str]]] = {}
+    for m, model in enumerate(models):
+        for name, variable in state_variables(state_record(model)).items():
+            first, names = found.setdefault(variable.label, (variable, {}))
+            if variable.label and first.element == variable.element:
+                names[m] = name
+    found.pop("", None)
+    return found
+
+
+def _of_particles(name: str) -> Callable[[Simulation, int], Array]:
+    return lambda simulation, m: np.asarray(getattr(simulation.bodies[m].particles, name))
+
+
+def _of_state(names: Mapping[int, str]) -> Callable[[Simulation, int], Array]:
+    return lambda simulation, m: np.asarray(getattr(simulation.bodies[m].state, names[m]))
+
+
+def _particle_edges(simulation: Simulation, m: int) -> Array:
+    """Deformed edge vectors of the particles as columns, F diag(h) R: (n, 3, 3), lengths of the deck."""
+    particles = simulation.bodies[m].particles
+    edges = np.array(simulation.grid.spacing)[:, None] * particles.size
+    return np.asarray(particles.deformation_gradient @ edges)
+
+
+def nodal_quantities(specification: Specification, stress: Any) -> dict[str, Quantity]:
+    """Everything at the nodes, by label; ``stress`` is the recorder (NodalStress) of the stress there."""
+    count = len(specification.MaterialProperties.MPM.material)
+    each, with_all = tuple(range(count)), tuple(range(count + 1))
+    found = {}
+    for label, (field, element) in NODAL_FIELDS.items():
+        mean = _MEANS.get(field)
+        found[label] = Quantity(
+            Variable(label, NODE, element), with_all if mean else each, _of_nodes(field, mean), False
+        )
+    found[STRESS_AT_NODES] = Quantity(
+        Variable(STRESS_AT_NODES, NODE, "Matrix3"), with_all, _stress_at_nodes(stress), False
+    )
+    found["NC_CCweight"] = Quantity(Variable("NC_CCweight", NODE, "double"), (0,), _node_to_cell_weight)
+    return found
+
+
+def _of_nodes(field: str, mean: Callable[[Any, Array], Array] | None) -> Callable[[Simulation, int], Array]:
+    def values(simulation: Simulation, m: int) -> Array:
+        nodal = getattr(simulation.nodal, field)
+        if mean is not None and m == len(simulation.bodies):
+            return on_lattice(simulation.grid, mean(simulation.nodal, nodal))
+        return on_lattice(simulation.grid, nodal[m])
+
+    return values
+
+
+def _stress_at_nodes(stress: Any) -> Callable[[Simulation, int], Array]:
+    def values(simulation: Simulation, m: int) -> Array:
+        if m < len(simulation.bodies):
+            return on_lattice(simulation.grid, stress.values[m])
+        return on_lattice(simulation.grid, _weighted(simulation.nodal.volume, stress.values))
+
+    return values
+
+
+def _node_to_cell_weight(simulation: Simulation, m: int) -> Array:
+    return on_lattice(simulation.grid, simulation.boundary_conditions.node_to_cell_weight())
+
+
+def _total(nodal: Any, field: Array) -> Array:
+    return np.asarray(field.sum(axis=0))
+
+
+def _mean_by_mass(nodal: Any, field: Array) -> Array:
+    return _weighted(nodal.mass, field)
+
+
+def _weighted(weight: Array, field: Array) -> Array:
+    """The mean over materials, sum_m w_m f_m / sum_m w_m, of (M, N, ...)."""
+    w = weight.reshape(weight.shape + (1,) * (field.ndim - 2))
+    return np.asarray((w * field).sum(axis=0) / w.sum(axis=0))
+
+
+_MEANS: dict[str, Callable[[Any, Array], Array]] = {
+    "mass": _total,
+    "volume": _total,
+    "velocity": _mean_by_mass,
+    "temperature": _mean_by_mass,
+}
+"""How the nodal fields of all materials together follow from those of each."""
+
+
+def on_lattice(grid: Grid, nodal: Array) -> Array:
+    """The nodes that an archive stores, of a field (N, ...) over all stored nodes: a view [x, y, z, ...].
+
+    Those are the nodes of the domain and of its extra cells; where it is periodic, the last node is the first.
+    """
+    box, ranges = grid.as_box(nodal), []
+    for axis in range(3):
+        first = -grid.index.first[axis]
+        low = first - grid.extra_cells[axis]
+        high = first + grid.cells[axis] + (0 if grid.periodic[axis] else 1 + grid.extra_cells[axis])
+        ranges.append(slice(low, high))
+    return np.asarray(box[tuple(ranges)])
+
+
+def sums(specification: Specification) -> dict[str, Sum]:
+    """Every history that a deck can save, by label."""
+    section = specification.MaterialProperties.MPM
+    count = len(section.material)
+    everything = (GLOBAL_MATERIAL, *range(count)) if count > 1 else (GLOBAL_MATERIAL,)
+    by_material = dict(SUMS_BY_MATERIAL)
+    if any(isinstance(law, PrescribedMotion) for law in section.contact):
+        by_material |= REACTIONS
+    over_all = dict(SUMS_OVER_ALL)
+    for face in specification.MPM.boundary_traction_faces:
+        over_all |= {f"{name}_{face}": element for name, element in (ON_FACES | TRACTIONS).items()}
+    found = {n: Sum(Variable(n, REDUCTION, element), everything) for n, element in by_material.items()}
+    found |= {n: Sum(Variable(n, REDUCTION, e), (GLOBAL_MATERIAL,)) for n, e in over_all.items()}
+    return found
