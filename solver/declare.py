@@ -18,10 +18,12 @@ from __future__ import annotations
 import dataclasses
 import importlib
 import pkgutil
+import re
 import typing
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
+from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 Vector = tuple[float, float, float]
@@ -148,7 +150,8 @@ class Family:
     ----------
     name : the family's name in this program, e.g. ``"flow_stress"``.
     tag : the tag in the deck, e.g. ``"flow_model"``.
-    package : the package whose modules each hold one model (or a close kin of models).
+    package : the package whose modules each hold one model (or a close kin of models), or the one module that
+        holds them all.
     key : ``"@type"`` when an attribute names the model, ``"type"`` when a child tag does, ``"tag"`` when the
         tag itself is the model's name (geometry pieces).
     meaning : what the family is, in a phrase.
@@ -169,22 +172,41 @@ class Family:
         if self._loaded:
             return
         self._loaded = True
-        package = importlib.import_module(self.package)
-        for module in pkgutil.iter_modules(package.__path__):
+        for module in self._modules():
             if not module.ispkg:
                 importlib.import_module(f"{self.package}.{module.name}")
 
+    def _modules(self) -> Iterator[pkgutil.ModuleInfo]:
+        """The modules of the package; none where a single module declares the whole family."""
+        yield from pkgutil.iter_modules(getattr(importlib.import_module(self.package), "__path__", ()))
+
+    @cached_property
+    def _homes(self) -> dict[str, str]:
+        """Name of a model -> the module that declares it, found in the texts of the modules without loading them."""
+        declaration = re.compile(rf'^@model\(\s*"{self.name}",([^)]*)', re.MULTILINE)
+        homes: dict[str, str] = {}
+        for module in self._modules():
+            spec = module.module_finder.find_spec(module.name, None)  # type: ignore[call-arg]  # of a path finder
+            origin = spec.origin if spec is not None else None
+            if origin is None or not origin.endswith(".py"):
+                continue
+            for names in declaration.findall(Path(origin).read_text(encoding="utf-8")):
+                homes.update((name, f"{self.package}.{module.name}") for name in re.findall(r'"([^"]+)"', names))
+        return homes
+
     def find(self, name: str) -> type | None:
-        """The record class of a model by its name, old or new; only the modules that may declare it are loaded."""
+        """The record class of a model by its name, old or new; only the module that declares it is loaded."""
         if not self._loaded and name not in self._models:
-            plain = name.replace("_", "").lower()
-            package = importlib.import_module(self.package)
-            for module in pkgutil.iter_modules(package.__path__):
-                if not module.ispkg and module.name.replace("_", "") == plain:
-                    importlib.import_module(f"{self.package}.{module.name}")
+            home = self._homes.get(name)
+            if home is None and self._homes:
+                return None
+            importlib.import_module(home or self.package)
         if name in self._models:
             return self._models[name]
-        return self.models.get(self.old_names.get(name, name))
+        today = self._old_names.get(name)
+        if today is None:
+            return self.models.get(name) if not self._homes else None
+        return self._models.get(today)
 
     @property
     def models(self) -> dict[str, type]:

@@ -30,15 +30,26 @@ def listen(listener: Callable[[str, Callable[..., Any]], None]) -> None:
 
 def generic(function: Function) -> Function:
     """Declare a function chosen by the class of its first argument; the body given here is only its signature."""
+    return _declare(function, None)
+
+
+def generic_with_default(function: Function) -> Function:
+    """As :func:`generic`, with the body given here for models that have none of their own."""
+    return _declare(function, function)
+
+
+def _declare(function: Function, default: Callable[..., Any] | None) -> Function:
     implementations: dict[type, Callable[..., Any]] = {}
 
     @functools.wraps(function)
     def call(model: Any, *args: Any) -> Any:
-        if type(model) not in implementations:
+        body = implementations.get(type(model), default)
+        if body is None:
             raise TypeError(f"{function.__name__} has no implementation for {type(model).__name__}")
-        return implementations[type(model)](model, *args)
+        return body(model, *args)
 
     call.implementations = implementations  # type: ignore[attr-defined]  # functions take attributes
+    call.default = default  # type: ignore[attr-defined]
     GENERICS.append(call)
     for listener in _listeners:
         listener("generic", call)

@@ -1,7 +1,5 @@
 """The options of the method: what a deck's ``<MPM>`` section may say."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated
 

@@ -16,6 +16,7 @@ from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
 from solver.jit import kernel
 from solver.materials.constitutive import DELETE, Material, Point, Step, stress_update
+from solver.materials.failure import Failure, restrained, weakened
 from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
 from solver.tensor import (
@@ -28,19 +29,21 @@ from solver.tensor import (
 )
 
 CHANNELS = 13
-"""Width of the array that particles scatter to: mass, momentum (3), volume, internal force (3), external
-force (3), mass times temperature, heat. One row is one node, so a particle touches few cache lines."""
+"""Width of the array that particles scatter to, one row a node: mass, momentum (3), internal force (3), heat,
+volume, mass times temperature, external force (3). Groups of four that are treated alike lie side by side, so
+that one vector instruction serves each."""
 
-EXTERNAL_FORCE = slice(8, 11)
+EXTERNAL_FORCE = slice(10, 13)
 """The channels of external force."""
+
+GATHERED = 8
+"""Width of the array that particles gather from: v* (3), T*, acceleration (3), temperature rate."""
 
 
 class Transfer(NamedTuple):
     """Options of a material's transfers between particles and grid."""
 
     axisymmetric: bool
-    gradient_enhanced: bool
-    """Project velocities and temperatures with their gradients (GEVP)."""
     rigid: bool
     spread_loads: bool
     """Whether external forces go to the nodes with the particle's weights (False: by corners, CBDI)."""
@@ -76,34 +79,25 @@ def particles_to_grid(
 
     Internal force: f_i = -sum_p V_p G_ip . (sigma_p - q_p I). Heat: sum_p (q_ext S_ip - k V_p G_ip . grad T) / c_v.
     """
-    nodes = np.empty(MOST_NODES, np.int64)
+    nodes = np.empty(MOST_NODES, np.uint64)
     weights = np.empty(MOST_NODES)
     gradients = np.empty((MOST_NODES, 3))
     sums[:] = 0.0
-    hx, hy, hz = grid.spacing
     for p in range(particles.mass.shape[0]):
         x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
         F, size = tensor_at(particles.deformation_gradient, p), tensor_at(particles.size, p)
         domain = particle_domain(interpolator, F, size)
         count = shape_functions(interpolator, grid, x, y, z, domain, nodes, weights, gradients)
-        mass, volume, temperature = particles.mass[p], particles.volume[p], particles.temperature[p]
+        mass, volume = particles.mass[p], particles.volume[p]
         mx, my, mz = (
             mass * particles.velocity[p, 0],
             mass * particles.velocity[p, 1],
             mass * particles.velocity[p, 2],
         )
-        s = volume * (tensor_at(particles.stress, p) - isotropic(particles.artificial_pressure[p]))
-        if transfer.rigid:
-            s = isotropic(0.0)
-        bx, by, bz = (
-            particles.external_force[p, 0],
-            particles.external_force[p, 1],
-            particles.external_force[p, 2],
-        )
-        if not transfer.spread_loads:
-            bx = by = bz = 0.0
+        thermal = mass * particles.temperature[p]
+        pull = negative_pull(particles, p, transfer)
         heat = particles.external_heat_rate[p] / transfer.specific_heat
-        flow = transfer.conductivity * volume
+        flow = -transfer.conductivity * volume
         qx, qy, qz = (
             flow * particles.temperature_gradient[p, 0],
             flow * particles.temperature_gradient[p, 1],
@@ -111,38 +105,70 @@ def particles_to_grid(
         )
         if transfer.axisymmetric:
             qz = 0.0
+        bx, by, bz = (
+            particles.external_force[p, 0],
+            particles.external_force[p, 1],
+            particles.external_force[p, 2],
+        )
+        if not transfer.spread_loads:
+            bx = by = bz = 0.0
         for n in range(count):
-            node, S = nodes[n], weights[n]
+            row, S = sums[nodes[n]], weights[n]
             gx, gy, gz = gradients[n, 0], gradients[n, 1], gradients[n, 2]
-            row = sums[node]
             row[0] += mass * S
-            if transfer.gradient_enhanced:
-                layer = grid.nodes[0] * grid.nodes[1]
-                rx = x - (grid.anchor[0] + (node % grid.nodes[0] + grid.first[0]) * hx)
-                ry = y - (grid.anchor[1] + (node % layer // grid.nodes[0] + grid.first[1]) * hy)
-                rz = z - (grid.anchor[2] + (node // layer + grid.first[2]) * hz)
-                L = tensor_at(particles.velocity_gradient, p)
-                g = particles.temperature_gradient[p]
-                mx = mass * (particles.velocity[p, 0] - (L.xx * rx + L.xy * ry + L.xz * rz))
-                my = mass * (particles.velocity[p, 1] - (L.yx * rx + L.yy * ry + L.yz * rz))
-                mz = mass * (particles.velocity[p, 2] - (L.zx * rx + L.zy * ry + L.zz * rz))
-                temperature = particles.temperature[p] - (g[0] * rx + g[1] * ry + g[2] * rz)
             row[1] += mx * S
             row[2] += my * S
             row[3] += mz * S
-            row[4] += volume * S
-            if transfer.axisymmetric:
-                row[5] -= gx * s.xx + gy * s.xy + gz * s.zz
-                row[6] -= gx * s.xy + gy * s.yy
-            else:
-                row[5] -= gx * s.xx + gy * s.yx + gz * s.zx
-                row[6] -= gx * s.xy + gy * s.yy + gz * s.zy
-                row[7] -= gx * s.xz + gy * s.yz + gz * s.zz
-            row[8] += bx * S
-            row[9] += by * S
-            row[10] += bz * S
-            row[11] += mass * temperature * S
-            row[12] += heat * S - (gx * qx + gy * qy + gz * qz)
+            row[4] += gx * pull.xx + gy * pull.yx + gz * pull.zx
+            row[5] += gx * pull.xy + gy * pull.yy + gz * pull.zy
+            row[6] += gx * pull.xz + gy * pull.yz + gz * pull.zz
+            row[7] += heat * S + gx * qx + gy * qy + gz * qz
+            row[8] += volume * S
+            row[9] += thermal * S
+            row[10] += bx * S
+            row[11] += by * S
+            row[12] += bz * S
+
+
+@kernel
+def negative_pull(particles: Particles, p: int, transfer: Transfer) -> Tensor:
+    """-V (sigma - q I) of a particle, whose product with G is its internal force on a node.
+
+    In axisymmetry the third component of G is S/r, which meets the hoop stress only.
+    """
+    if transfer.rigid:
+        return isotropic(0.0)
+    s = (tensor_at(particles.stress, p) - isotropic(particles.artificial_pressure[p])) * -particles.volume[p]
+    if transfer.axisymmetric:
+        return Tensor(s.xx, s.xy, 0.0, s.xy, s.yy, 0.0, s.zz, 0.0, 0.0)
+    return s
+
+
+@kernel
+def add_gradients(interpolator: Any, grid: GridIndex, particles: Particles, sums: Any) -> None:
+    """Gradient-enhanced projection: particles give nodes v_p - L (x_p - x_i) and T_p - grad T . (x_p - x_i).
+
+    Adds to ``sums`` what :func:`particles_to_grid` left out.
+    """
+    nodes = np.empty(MOST_NODES, np.int64)
+    weights = np.empty(MOST_NODES)
+    gradients = np.empty((MOST_NODES, 3))
+    layer = grid.nodes[0] * grid.nodes[1]
+    for p in range(particles.mass.shape[0]):
+        x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
+        F, size = tensor_at(particles.deformation_gradient, p), tensor_at(particles.size, p)
+        domain = particle_domain(interpolator, F, size)
+        count = shape_functions(interpolator, grid, x, y, z, domain, nodes, weights, gradients)
+        L, g = tensor_at(particles.velocity_gradient, p), particles.temperature_gradient[p]
+        for n in range(count):
+            row, mass = sums[nodes[n]], particles.mass[p] * weights[n]
+            rx = x - (grid.anchor[0] + (nodes[n] % grid.nodes[0] + grid.first[0]) * grid.spacing[0])
+            ry = y - (grid.anchor[1] + (nodes[n] % layer // grid.nodes[0] + grid.first[1]) * grid.spacing[1])
+            rz = z - (grid.anchor[2] + (nodes[n] // layer + grid.first[2]) * grid.spacing[2])
+            row[1] -= mass * (L.xx * rx + L.xy * ry + L.xz * rz)
+            row[2] -= mass * (L.yx * rx + L.yy * ry + L.yz * rz)
+            row[3] -= mass * (L.zx * rx + L.zy * ry + L.zz * rz)
+            row[9] -= mass * (g[0] * rx + g[1] * ry + g[2] * rz)
 
 
 @kernel
@@ -180,13 +206,13 @@ def normalise(
         row = sums[i]
         m = EMPTY_MASS + row[0]
         mass[i] = m
-        volume[i] = EMPTY_MASS + row[4]
+        volume[i] = EMPTY_MASS + row[8]
         for c in range(3):
             velocity[i, c] = row[1 + c] / m
-            internal_force[i, c] = row[5 + c]
-            external_force[i, c] = row[8 + c]
-        temperature[i] = row[11] / m
-        heat[i] = row[12]
+            internal_force[i, c] = row[4 + c]
+            external_force[i, c] = row[10 + c]
+        temperature[i] = row[9] / m
+        heat[i] = row[7]
 
 
 @kernel
@@ -257,15 +283,14 @@ def smooth_velocity(
     grid: GridIndex,
     particles: Particles,
     velocity: Any,
-    mass: Any,
-    gathered: Any,
+    filtered: Any,
     smoothed: Any,
 ) -> None:
-    """XPIC(2), Hammerquist and Nairn (2017): S v at the particles, then S+ S v back at the nodes.
+    """XPIC(2), Hammerquist and Nairn (2017): S v at the particles, then their momentum S+ S v back at the nodes.
 
-    ``gathered`` (n, 3) gets sum_i S_ip v_i, ``smoothed`` (N, 3) sum_p S_ip m_p gathered_p / m_i.
+    ``filtered`` (n, 3) gets sum_i S_ip v_i, ``smoothed`` (N, 3) sum_p S_ip m_p filtered_p.
     """
-    nodes = np.empty(MOST_NODES, np.int64)
+    nodes = np.empty(MOST_NODES, np.uint64)
     weights = np.empty(MOST_NODES)
     gradients = np.empty((MOST_NODES, 3))
     smoothed[:] = 0.0
@@ -280,7 +305,7 @@ def smooth_velocity(
             vx += velocity[nodes[n], 0] * weights[n]
             vy += velocity[nodes[n], 1] * weights[n]
             vz += velocity[nodes[n], 2] * weights[n]
-        gathered[p, 0], gathered[p, 1], gathered[p, 2] = vx, vy, vz
+        filtered[p, 0], filtered[p, 1], filtered[p, 2] = vx, vy, vz
         for n in range(count):
             mS = particles.mass[p] * weights[n]
             smoothed[nodes[n], 0] += mS * vx
@@ -306,26 +331,36 @@ class Motion(NamedTuple):
 
 
 @kernel
+def interleave(
+    velocity_star: Any, temperature_star: Any, acceleration: Any, temperature_rate: Any, gathered: Any
+) -> None:
+    """Put what particles gather from a node side by side: rows (N, GATHERED)."""
+    for i in range(gathered.shape[0]):
+        for c in range(3):
+            gathered[i, c] = velocity_star[i, c]
+            gathered[i, 4 + c] = acceleration[i, c]
+        gathered[i, 3] = temperature_star[i]
+        gathered[i, 7] = temperature_rate[i]
+
+
+@kernel
 def grid_to_particles(
     interpolator: Any,
     grid: GridIndex,
     particles: Particles,
     transfer: Transfer,
-    velocity_star: Any,
-    acceleration: Any,
-    temperature_rate: Any,
-    temperature_star: Any,
-    heat_flows: bool,
-    gathered: Any,
+    nodal: Any,
+    filtered: Any,
     smoothed: Any,
     dt: float,
 ) -> Motion:
     """Move particles and gather the velocity gradient L_p = sum_i v*_i (x) G_ip.
 
-    FLIP: x += dt sum S v*, v += dt sum S a. With XPIC(2) (``smoothed`` not empty):
-    v = 2 S v - S S+ S v + dt a_p and x by its mean over the step.
+    ``nodal`` holds rows as :func:`interleave` makes them. FLIP: x += dt sum S v*, v += dt sum S a. With XPIC(2)
+    (``smoothed`` (N, 3) not empty, ``filtered`` (n, 3) the velocities S v): v = 2 S v - S S+ S v + dt a_p, and x
+    moves by the mean of the velocities that this makes.
     """
-    nodes = np.empty(MOST_NODES, np.int64)
+    nodes = np.empty(MOST_NODES, np.uint64)
     weights = np.empty(MOST_NODES)
     gradients = np.empty((MOST_NODES, 3))
     xpic = smoothed.shape[0] > 0
@@ -337,63 +372,57 @@ def grid_to_particles(
             interpolator, tensor_at(particles.deformation_gradient, p), tensor_at(particles.size, p)
         )
         count = shape_functions(interpolator, grid, x, y, z, domain, nodes, weights, gradients)
-        vx = vy = vz = ax = ay = az = rate = 0.0
-        sx = sy = sz = tx = ty = tz = 0.0
-        xx = xy = xz = yx = yy = yz = zx = zy = zz = 0.0
+        vx = vy = vz = ts = ax = ay = az = rate = 0.0
+        xx = yx = zx = tx = xy = yy = zy = ty = xz = yz = zz = tz = 0.0
         for n in range(count):
-            node, S = nodes[n], weights[n]
+            row, S = nodal[nodes[n]], weights[n]
             gx, gy, gz = gradients[n, 0], gradients[n, 1], gradients[n, 2]
-            ux, uy, uz = velocity_star[node, 0], velocity_star[node, 1], velocity_star[node, 2]
+            ux, uy, uz, T = row[0], row[1], row[2], row[3]
             vx += ux * S
             vy += uy * S
             vz += uz * S
-            ax += acceleration[node, 0] * S
-            ay += acceleration[node, 1] * S
-            az += acceleration[node, 2] * S
-            rate += temperature_rate[node] * S
+            ts += T * S
             xx += ux * gx
-            xy += ux * gy
             yx += uy * gx
+            zx += uz * gx
+            tx += T * gx
+            xy += ux * gy
             yy += uy * gy
-            if transfer.axisymmetric:
-                zz += ux * gz
-            else:
-                xz += ux * gz
-                yz += uy * gz
-                zx += uz * gx
-                zy += uz * gy
-                zz += uz * gz
-            if heat_flows:
-                tx += temperature_star[node] * gx
-                ty += temperature_star[node] * gy
-                tz += temperature_star[node] * gz
-            if xpic:
-                sx += smoothed[node, 0] * S
-                sy += smoothed[node, 1] * S
-                sz += smoothed[node, 2] * S
-        put_tensor(particles.velocity_gradient, p, Tensor(xx, xy, xz, yx, yy, yz, zx, zy, zz))
+            zy += uz * gy
+            ty += T * gy
+            xz += ux * gz
+            yz += uy * gz
+            zz += uz * gz
+            tz += T * gz
+            ax += row[4] * S
+            ay += row[5] * S
+            az += row[6] * S
+            rate += row[7] * S
+        L = Tensor(xx, xy, xz, yx, yy, yz, zx, zy, zz)
+        if transfer.axisymmetric:
+            L = Tensor(xx, xy, 0.0, yx, yy, 0.0, 0.0, 0.0, xz)
+        put_tensor(particles.velocity_gradient, p, L)
         particles.temperature_gradient[p, 0] = tx
         particles.temperature_gradient[p, 1] = ty
         particles.temperature_gradient[p, 2] = tz
         particles.temperature_rate[p] = rate
-        thermal += particles.temperature[p] * particles.mass[p] * transfer.specific_heat
-        moved = (vx, vy, vz)
-        gained = (ax, ay, az)
-        filtered = (sx, sy, sz)
+        m = particles.mass[p]
+        thermal += particles.temperature[p] * m * transfer.specific_heat
+        moved, gained = (vx, vy, vz), (ax, ay, az)
         for c in range(3):
             v = particles.velocity[p, c]
             particles.old_velocity[p, c] = v
+            step = moved[c] * dt
+            particles.velocity[p, c] = v + gained[c] * dt
             if xpic:
-                twice = 2.0 * gathered[p, c]
-                correction = 0.5 * (gained[c] * dt + (v - twice) + filtered[c]) * dt
-                step = moved[c] * dt - correction
-                particles.velocity[p, c] = twice - filtered[c] + gained[c] * dt
-            else:
-                step = moved[c] * dt
-                particles.velocity[p, c] = v + gained[c] * dt
+                again = 0.0
+                for n in range(count):
+                    again += smoothed[nodes[n], c] * weights[n]
+                twice = 2.0 * filtered[p, c]
+                step -= 0.5 * (gained[c] * dt + (v - twice) + again) * dt
+                particles.velocity[p, c] = twice - again + gained[c] * dt
             particles.position[p, c] += step
             particles.displacement[p, c] += step
-        m = particles.mass[p]
         ux, uy, uz = particles.velocity[p, 0], particles.velocity[p, 1], particles.velocity[p, 2]
         kinetic += 0.5 * m * (ux * ux + uy * uy + uz * uz)
         px += m * ux
@@ -463,6 +492,7 @@ class Stressed(NamedTuple):
 def update_stresses(
     model: Any,
     state: Any,
+    failure: Failure,
     particles: Particles,
     material: Material,
     step: Step,
@@ -502,8 +532,10 @@ def update_stresses(
             particles.previous_temperature[p],
             particles.localized[p],
         )
+        point = restrained(failure, point)
         new = stress_update(model, state, p, point, material, step)
-        put_tensor(particles.deformation_gradient, p, F)
+        new = weakened(failure, model, state, p, point, new, material, step)
+        put_tensor(particles.deformation_gradient, p, point.deformation_gradient)
         put_tensor(particles.stress, p, new.stress)
         particles.volume[p] = volume
         particles.artificial_pressure[p] = new.artificial_pressure
@@ -520,7 +552,8 @@ def update_stresses(
         wx = max(wx, c + abs(particles.old_velocity[p, 0]))
         wy = max(wy, c + abs(particles.old_velocity[p, 1]))
         wz = max(wz, c + abs(particles.old_velocity[p, 2]))
-        if not math.isfinite(norm(new.stress) + c + particles.position[p, 0]):
+        x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
+        if not math.isfinite(norm(new.stress) + c + x + y + z):
             finite = False
     return Stressed(energy, total_volume, (wx, wy, wz), finite)
 
@@ -549,6 +582,9 @@ def settle(
                 wraps = math.floor(q / cells[c])
                 particles.position[p, c] -= wraps * cells[c] * grid.spacing[c]
                 q -= wraps * cells[c]
+                if q >= cells[c]:  # a rounding error below the lower face
+                    particles.position[p, c] = grid.anchor[c]
+                    q = 0.0
             i = math.floor(q)
             if i < 0 or i >= cells[c]:
                 inside = False

@@ -55,8 +55,8 @@ class FaceTractions:
     """Mean traction and contact area of the faces that ``boundary_traction_faces`` names, in every step.
 
     The traction of a face is sum_i sigma_i . n A_i / sum_i A_i over its nodes i and all materials, with the
-    outward normal n and A_i = 2 V_i / h (half of the volume of a node at the edge is missing). The contact area
-    is the normal force over the normal traction, or sum_i A_i where the traction is next to nothing.
+    outward normal n and A_i = 2 V_i / h (half of the volume of a node at the edge is missing). The contact
+    area is the normal force over the normal traction, or sum_i A_i where the traction is next to nothing.
     """
 
     def __init__(self, faces: tuple[str, ...]) -> None:
@@ -91,7 +91,7 @@ class FaceTractions:
 
 
 def on_face(grid: Grid, nodal: Array, face: str) -> Array:
-    """The values of a nodal field (N, ...) on a face of the bounding box, extra nodes left out: (a, b, ...)."""
+    """The values (a, b, ...) of a nodal field (N, ...) on a face of the bounding box, without extra nodes."""
     axis = FACES.index(face) // 2
     box = grid.as_box(nodal)
     ranges: list[Any] = [slice(g, g + n + 1) for g, n in zip(grid.ghost, grid.cells, strict=True)]

@@ -20,7 +20,8 @@ from solver.boundary_conditions import BoundaryConditions
 from solver.contact.law import ContactLaw, ContactScene
 from solver.flags import Flags
 from solver.grid import FACES, Grid
-from solver.kernels import CHANNELS, EXTERNAL_FORCE, Kinematics, Transfer
+from solver.kernels import CHANNELS, EXTERNAL_FORCE, GATHERED, Kinematics, Transfer
+from solver.materials.failure import Failure, new_failure
 from solver.materials.constitutive import Material, Step, initial_sound_speed, time_step_limit
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.particles import Particles, keep
@@ -48,6 +49,7 @@ class Body:
     model : the constitutive model's record.
     state : the model's own arrays.
     particles : the particles.
+    failure : how they are damaged, and what becomes of those that failed.
     rigid : moves as contact tells it and carries no stress.
     transmits_force : feels no acceleration of its own (Uintah's force-transmitting material).
     activation_time : before this time the body neither weighs nor pushes.
@@ -61,6 +63,7 @@ class Body:
     model: Any
     state: Any
     particles: Particles
+    failure: Failure = field(default_factory=lambda: new_failure(None, None, 0))
     rigid: bool = False
     transmits_force: bool = False
     activation_time: float = 0.0
@@ -69,8 +72,17 @@ class Body:
 
     def keep(self, kept: Array) -> None:
         """Drop the particles that a mask (n,) leaves out."""
-        self.particles = keep(self.particles, kept)
-        self.state = keep(self.state, kept)
+        self.records = tuple(keep(record, kept) for record in self.records)
+
+    @property
+    def records(self) -> tuple[Any, ...]:
+        """All arrays of the particles: NamedTuples whose fields declare how an archive calls them."""
+        return self.particles, self.state, self.failure.damage_state, self.failure.erosion_state
+
+    @records.setter
+    def records(self, records: tuple[Any, ...]) -> None:
+        self.particles, self.state, damage_state, erosion_state = records
+        self.failure = self.failure._replace(damage_state=damage_state, erosion_state=erosion_state)
 
 
 @dataclass
@@ -111,6 +123,7 @@ class Simulation:
         count = self.grid.number_of_nodes
         self.nodal: NodalFields = new_nodal_fields(self.grid, len(self.bodies))
         self._sums = np.zeros((count, CHANNELS))
+        self._gathered = np.zeros((count, GATHERED))
         self._temperature_star = np.zeros((len(self.bodies), count))
         self._projected_temperature = np.zeros((len(self.bodies), count))
         self._smoothed = np.zeros((count if self.flags.XPIC2 else 0, 3))
@@ -199,7 +212,6 @@ class Simulation:
         conducts = self.flags.explicit_heat_conduction
         return Transfer(
             axisymmetric=self.flags.axisymmetric,
-            gradient_enhanced=self.flags.gradient_enhanced_projection,
             rigid=body.rigid,
             spread_loads=self.spread_corner_loads is None,
             conductivity=body.material.thermal_conductivity / body.material.specific_heat if conducts else 0.0,
@@ -216,6 +228,8 @@ class Simulation:
             kernels.particles_to_grid(
                 self.interpolator, self.grid.index, body.particles, self._transfer(body), self._sums
             )
+            if self.flags.gradient_enhanced_projection:
+                kernels.add_gradients(self.interpolator, self.grid.index, body.particles, self._sums)
             if self.spread_corner_loads is not None:
                 self.spread_corner_loads(body, self._sums[:, EXTERNAL_FORCE])
         else:
@@ -347,26 +361,29 @@ class Simulation:
 
     def _move(self, m: int, body: Body, dt: float) -> None:
         nodal, particles = self.nodal, body.particles
-        gathered, smoothed = np.zeros((0, 3)), self._smoothed[:0]
+        filtered, smoothed = np.zeros((0, 3)), self._smoothed[:0]
         if self.flags.XPIC2 and not body.rigid:
-            gathered, smoothed = np.empty((len(particles), 3)), self._smoothed
+            filtered, smoothed = np.empty((len(particles), 3)), self._smoothed
             kernels.smooth_velocity(
-                self.interpolator, self.grid.index, particles, nodal.velocity[m], nodal.mass[m], gathered, smoothed
+                self.interpolator, self.grid.index, particles, nodal.velocity[m], filtered, smoothed
             )
             if len(self._images[0]):
                 kernels.fold_images(smoothed, *self._images)
             kernels.divide_by_mass(smoothed, nodal.mass[m])
+        kernels.interleave(
+            nodal.velocity_star[m],
+            self._temperature_star[m],
+            nodal.acceleration[m],
+            nodal.temperature_rate[m],
+            self._gathered,
+        )
         motion = kernels.grid_to_particles(
             self.interpolator,
             self.grid.index,
             particles,
             self._transfer(body),
-            nodal.velocity_star[m],
-            nodal.acceleration[m],
-            nodal.temperature_rate[m],
-            self._temperature_star[m],
-            self.flags.explicit_heat_conduction,
-            gathered,
+            self._gathered,
+            filtered,
             smoothed,
             dt,
         )
@@ -392,6 +409,7 @@ class Simulation:
         stressed = kernels.update_stresses(
             body.model,
             body.state,
+            body.failure,
             body.particles,
             body.material,
             step,

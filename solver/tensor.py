@@ -222,30 +222,71 @@ def inverse(a: Tensor) -> Tensor:
 MOST_ITERATIONS = 200
 """After so many the polar decomposition gives up: F is singular or nearly so."""
 
+ROTATION_ERROR = 2.0**-53
+"""Square of the norm of (R^T R - I) / 2 at which the polar decomposition ends, that of Uintah."""
+
+
+@inline
+def from_symmetric(xx: float, yy: float, zz: float, xy: float, xz: float, yz: float) -> Tensor:
+    """The symmetric tensor of six components."""
+    return Tensor(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+
+
+@inline
+def green_strain(F: Tensor) -> Tensor:
+    """(F^T F - I) / 2."""
+    return from_symmetric(
+        0.5 * (F.xx * F.xx + F.yx * F.yx + F.zx * F.zx - 1.0),
+        0.5 * (F.xy * F.xy + F.yy * F.yy + F.zy * F.zy - 1.0),
+        0.5 * (F.xz * F.xz + F.yz * F.yz + F.zz * F.zz - 1.0),
+        0.5 * (F.xx * F.xy + F.yx * F.yy + F.zx * F.zy),
+        0.5 * (F.xx * F.xz + F.yx * F.yz + F.zx * F.zz),
+        0.5 * (F.xy * F.xz + F.yy * F.yz + F.zy * F.zz),
+    )
+
+
+@inline
+def to_laboratory(R: Tensor, a: Tensor) -> Tensor:
+    """R a R^T for a symmetric tensor, of which six components are enough."""
+    b = R @ a
+    return from_symmetric(
+        b.xx * R.xx + b.xy * R.xy + b.xz * R.xz,
+        b.yx * R.yx + b.yy * R.yy + b.yz * R.yz,
+        b.zx * R.zx + b.zy * R.zy + b.zz * R.zz,
+        b.xx * R.yx + b.xy * R.yy + b.xz * R.yz,
+        b.xx * R.zx + b.xy * R.zy + b.xz * R.zz,
+        b.yx * R.zx + b.yy * R.zy + b.yz * R.zz,
+    )
+
+
+@inline
+def to_material(R: Tensor, a: Tensor) -> Tensor:
+    """R^T a R for a symmetric tensor."""
+    return to_laboratory(R.T, a)
+
 
 @inline
 def rotation(F: Tensor) -> Tensor:
     """The rotation R of the polar decomposition F = R U, for det F > 0.
 
-    The iteration of Björck and Bowie (SIAM J. Numer. Anal. 8, 1971), A <- A (I - E) with E = (A^T A - I) / 2,
+    The iteration of Björck and Bowie (SIAM J. Numer. Anal. 8, 1971), R <- R (I - E) with E = (R^T R - I) / 2,
     started from F scaled to the norm of a rotation. As in Uintah it ends when E:E no longer counts beside 1,
     so R is orthogonal to about 1e-8 or better; going on would part from Uintah's results in the ninth digit.
     """
     identity = isotropic(1.0)
-    C = F.T @ F
-    scaling = 3.0 / trace(C)
-    A = F * math.sqrt(scaling)
-    E = 0.5 * (C * scaling - identity)
+    R = F * math.sqrt(3.0 / double_dot(F, F))
+    E = green_strain(R)
     error = double_dot(E, E)
     for _ in range(MOST_ITERATIONS):
-        if error + 1.0 == 1.0:
+        if error <= ROTATION_ERROR:
             break
-        A = A @ (identity - E)
-        E = 0.5 * (A.T @ A - identity)
-        last, error = error, double_dot(E, E)
-        if error >= last:
+        R = R @ (identity - E)
+        E = green_strain(R)
+        improved = double_dot(E, E)
+        if improved >= error:
             break
-    return A
+        error = improved
+    return R
 
 
 class Principal(NamedTuple):
@@ -262,7 +303,7 @@ def principal_values(a: Tensor) -> Principal:
     mean = trace(a) / 3.0
     s = deviator(a)
     j2 = 0.5 * double_dot(s, s)
-    if j2 <= 1.0e-300:
+    if j2 <= 1.0e-200:
         return Principal(mean, mean, mean)
     r = 2.0 * math.sqrt(j2 / 3.0)
     cos3 = min(1.0, max(-1.0, 4.0 * determinant(s) / r**3))

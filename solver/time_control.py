@@ -1,7 +1,5 @@
 """How long the run goes on and how large each step may be: the deck's ``<Time>`` section."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Annotated

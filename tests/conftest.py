@@ -1,7 +1,7 @@
 """What all tests share: reference material beside the checkout, and settings of the tools.
 
-Compiled kernels are kept where ``solver.jit`` puts them, a folder named after the state of the sources. The first
-import settles that folder in the environment, so that all tests and the programs that they start share it.
+Compiled kernels are kept where ``solver.jit`` puts them, a folder named after the state of the sources. The
+first import settles that folder in the environment, so that all tests and programs that they start share it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ SHARED = Path(__file__).resolve().parents[2] / "shared"
 
 @pytest.fixture(scope="session")
 def shared() -> Path:
-    """The folder of reference runs, decks and archives; tests that ask for it are skipped where it is absent."""
+    """The folder of reference runs, decks and archives; a test that asks for it is skipped without it."""
     if not SHARED.is_dir():
         pytest.skip("needs the folder ../shared")
     return SHARED

@@ -6,20 +6,25 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from solver.creation import GeometryObject
-from solver.declare import FAMILIES, IntVector, Parameter, SubModel, Vector
+from solver.declare import FAMILIES, IntVector, Parameter, SubModel, Vector, one_of
 from solver.flags import Flags
 from solver.time_control import TimeControl
-from ups.diagnostics import DeckError, Diagnostics
-from ups.document import Document, Text, read_document
-from ups.known import KNOWN_COMPONENTS
+from ups.diagnostics import DeckError, Diagnostics, Fix, did_you_mean
+from ups.document import Attribute, Document, Text, read_document
+from ups.grammar.components import COMPONENTS
 from ups.reader import Opaque, Reader
+
+if TYPE_CHECKING:
+    from ups.result import Result
 
 import solver.contact  # isort: skip  # declares the family of contact laws
 import solver.loads  # isort: skip  # declares the family of loads
 import solver.materials  # isort: skip  # declares the family of constitutive models
+import solver.materials.damage  # isort: skip  # declares the family of damage models
+import solver.materials.erosion  # isort: skip  # declares the family of erosion algorithms
 
 
 @dataclass(frozen=True)
@@ -38,6 +43,7 @@ class Component:
     type_tag: Annotated[str, Parameter("the method, in the form of old decks", tag="type")] = ""
 
 
+@one_of("gravity")
 @dataclass(frozen=True)
 class PhysicalConstants:
     """Constants of nature, or of the problem."""
@@ -79,6 +85,7 @@ class Checkpoint:
     lastTimestep: Annotated[bool, Parameter("write one at the end of the run", attribute=True)] = False
 
 
+@one_of("outputInterval", "outputTimestepInterval", needed=False)
 @dataclass(frozen=True)
 class DataArchiver:
     """What is written, where and how often."""
@@ -212,6 +219,8 @@ class MaterialSection:
     possible_alpha_material: Annotated[
         bool, Parameter("may be the body whose surface separates it from the others in contact")
     ] = True
+    damage_model: Annotated[Any, SubModel("damage")] = None
+    erosion: Annotated[Any, SubModel("erosion")] = None
     name: Annotated[str, Parameter("name of the material", attribute=True)] = ""
 
 
@@ -285,10 +294,18 @@ class Deck:
         return self.document.sources
 
     def require(self) -> Specification:
-        """The values of the deck; raises DeckError where it has errors."""
+        """The values of the deck; raises DeckError where it has errors or asks for what is not supported."""
+        for what, at in self.reader.unsupported:
+            self.diagnostics.error("UPS412", f"{what}: known, not supported by this program", at)
         if self.specification is None or self.diagnostics.has_errors:
             raise DeckError(self.diagnostics, self.sources)
         return self.specification
+
+    def run(self, output: str | os.PathLike[str] | None = None, *, max_steps: int | None = None) -> Result:
+        """Run the deck and return its result; see ``ups.session.run_deck``."""
+        from ups.session import run_deck
+
+        return run_deck(self, output=output, max_steps=max_steps)
 
 
 def read_deck(
@@ -304,16 +321,23 @@ def read_deck(
     document = read_document(path, text=text)
     diagnostics = Diagnostics(document.diagnostics)
     folder = Path(path).parent
-    reader = Reader(diagnostics, lambda name: find_data_file(name, folder))
+    from ups.rules.old_forms import modernise
+
+    reader = Reader(diagnostics, lambda name: find_data_file(name, folder), document.complete)
     specification = None
-    if document.root is not None and document.complete:
+    if document.root is not None:
         for override_path, value in overrides:
             _override(document, override_path, value, diagnostics)
-        component = _component(document, diagnostics)
-        if component == "mpm":
+        modernise(document.root, diagnostics)
+        name = _component(document, diagnostics)
+        component = COMPONENTS.get(name)
+        if component is not None and component.runs:
             specification = reader.read(Specification, document.root)
-        elif component:
-            _say_unsupported(document, component, diagnostics)
+        elif component is not None:
+            at = document.root.get("SimulationComponent") or document.root
+            reader.say_unsupported(f"{name}: {component.meaning}", at)
+            if component.record is not None:
+                reader.read(component.load(), document.root)
     return Deck(Path(path), document, specification, diagnostics, reader)
 
 
@@ -344,36 +368,34 @@ def _override(document: Document, path: str, value: str, diagnostics: Diagnostic
 
 
 def _component(document: Document, diagnostics: Diagnostics) -> str:
-    """The method that a deck is for, in lower case."""
+    """The method that a deck is for, in lower case; empty after diagnostics where there is none or no such."""
     assert document.root is not None
     section = document.root.get("SimulationComponent")
     if section is None:
-        diagnostics.error("UPS101", 'the deck needs <SimulationComponent type="mpm"/>', document.root)
+        if document.complete:
+            message = 'the deck needs <SimulationComponent type="mpm"/>'
+            diagnostics.error("UPS101", message, document.root)
         return ""
-    if "type" in section.attributes:
-        return section.attributes["type"].value.strip().lower()
+    at: Attribute | Text | None = section.attributes.get("type")
     child = section.get("type")
-    if child is None or not child.text:
-        diagnostics.error("UPS111", "<SimulationComponent> needs the attribute 'type', e.g. \"mpm\"", section)
+    if at is None and child is not None and child.texts:
+        at = child.texts[0]
+        fix = Fix((section.replaced(f'<SimulationComponent type="{child.text}"/>'),))
+        message = "<SimulationComponent><type> is the form of old decks"
+        suggestion = f'write <SimulationComponent type="{child.text}"/>'
+        diagnostics.note("UPS302", message, child, suggestion, fix)
+    if at is None:
+        message = "<SimulationComponent> needs the attribute 'type', e.g. \"mpm\""
+        diagnostics.error("UPS111", message, section)
         return ""
-    diagnostics.note(
-        "UPS302",
-        "<SimulationComponent><type> is the form of old decks",
-        child,
-        f'write <SimulationComponent type="{child.text}"/>',
-    )
-    return child.text.lower()
-
-
-def _say_unsupported(document: Document, component: str, diagnostics: Diagnostics) -> None:
-    assert document.root is not None
-    at = document.root.get("SimulationComponent")
-    if component in KNOWN_COMPONENTS:
-        diagnostics.note("UPS412", f"{component}: {KNOWN_COMPONENTS[component]} is not run by this program", at)
-    else:
-        diagnostics.error(
-            "UPS209", f"unknown method {component!r}; this program runs mpm", at, "did you mean mpm?"
-        )
+    name = at.value.strip().lower()
+    if name not in COMPONENTS:
+        nearest = did_you_mean(name, COMPONENTS)
+        suggestion = f"did you mean {nearest}?" if nearest else "this program runs mpm"
+        repair = Fix((at.replaced(nearest),), safe=False) if nearest else None
+        diagnostics.error("UPS209", f"unknown method {at.value.strip()!r}", at, suggestion, repair)
+        return nearest or ""
+    return name
 
 
 assert {"geometry", "constitutive_model", "contact"} <= FAMILIES.keys()

@@ -12,7 +12,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ups.diagnostics import Diagnostics, Located, did_you_mean, suggestion_for
+import materialdata
+from ups.diagnostics import Diagnostics, Fix, Located, did_you_mean, suggestion_for
 from ups.element import Attribute, Comment, Element, Text, to_xml
 from ups.source import SourceFile, load_source
 from ups.xml_parser import ParsedFile, parse_xml
@@ -106,7 +107,7 @@ def locate_include(
     then in the folders above the including file when `href` begins with ``inputs/`` (decks that are run
     from above their ``inputs`` folder), then in the program's own ``inputs`` and ``materialdata``; each
     time also with a leading ``inputs/`` or ``materialdata/`` dropped or added. Last, a file of this
-    name anywhere in the program's ``materialdata``.
+    name, or of the name that it has today, anywhere in the program's ``materialdata``.
     """
     href = href.strip()
     if not href or "\x00" in href:
@@ -114,8 +115,7 @@ def locate_include(
     for candidate in _candidates(href, Path(including_file), [Path(folder) for folder in search]):
         if os.path.isfile(candidate):
             return candidate
-    own = sorted((_PROGRAM_ROOT / "materialdata").rglob("*"))
-    return next((path for path in own if path.name == Path(href).name and path.is_file()), None)
+    return materialdata.find(href, _PROGRAM_ROOT / "materialdata")
 
 
 def _candidates(href: str, including_file: Path, search: list[Path]) -> list[Path]:
@@ -233,6 +233,7 @@ class _DeckReader:
         if path is None:
             self._report_missing(href)
             return None
+        self._say_renamed(href, path.name)
         name = os.fspath(path)
         real = os.path.realpath(name)
         if real in chain:
@@ -243,6 +244,15 @@ class _DeckReader:
             self.files[name] = load_source(name, self.diagnostics)
         source = self.files[name]
         return source if source and self._within_limits(source, href) else None
+
+    def _say_renamed(self, href: Attribute, today: str) -> None:
+        """Note that a file was found under another name than the deck gives it."""
+        folder, slash, written = href.value.strip().rpartition("/")
+        if written != today:
+            fix = Fix((href.replaced(f"{folder}{slash}{today}"),))
+            self.diagnostics.note(
+                "UPS305", f"{written} is an older name of {today}", href, f"write {folder}{slash}{today}", fix
+            )
 
     def _within_limits(self, source: SourceFile, at: Located) -> bool:
         """Count what is included; False, and one diagnostic, when a deck includes without end."""
@@ -290,7 +300,8 @@ class _DeckReader:
         folders: dict[Path, None] = {}
         for candidate in _candidates(os.fspath(written), Path(href.source.name), list(self.search)):
             folders.setdefault(candidate.parent)
-        names = (name for folder in folders for name in _file_names(folder))
+        names = [name for folder in folders for name in _file_names(folder)]
+        names += sorted(path.name for path in (_PROGRAM_ROOT / "materialdata").rglob("*.xml"))
         nearest = did_you_mean(written.name, names)
         suggestion = nearest and f"did you mean {(written.parent / nearest).as_posix()}?"
         self.diagnostics.error("UPS011", f"include file {written.as_posix()} not found", href, suggestion)

@@ -14,6 +14,9 @@ from solver.flags import Flags
 from solver.grid import Grid, Patch
 from solver.loads.loads import Loads
 from solver.materials.constitutive import Material, initialize, state_record
+from solver.materials.damage import for_constitutive_model, initialize_damage
+from solver.materials.erosion import lets_fail
+from solver.materials.failure import Failure, new_failure
 from solver.materials.rigid import Rigid
 from solver.particles import new_arrays
 from ups.deck import Box, Deck, Level, MaterialSection, Specification
@@ -334,6 +337,9 @@ class _Builder:
 
         model = section.constitutive_model
         material = self._constants(section)
+        failure = self._failure(section, creation)
+        if hasattr(model, "failure_is_checked"):
+            model = model._replace(failure_is_checked=lets_fail(failure.erosion))
         state = new_arrays(state_record(model), len(creation.particles))
         self._guard(
             "UPS502", model, lambda: initialize(model, state, creation.particles, material, creation.patch)
@@ -345,6 +351,7 @@ class _Builder:
             model=model,
             state=state,
             particles=creation.particles,
+            failure=failure,
             rigid=section.is_rigid
             or isinstance(model, Rigid)
             or any(index in law.made_rigid for law in contact),
@@ -354,6 +361,22 @@ class _Builder:
             possible_alpha=section.possible_alpha_material
             and not any(index in law.never_alpha for law in contact),
         )
+
+    def _failure(self, section: MaterialSection, creation: Creation) -> Failure:
+        """Damage and erosion of a material; decks of old gave the damage inside the constitutive model."""
+        model = section.constitutive_model
+        damage = section.damage_model or getattr(model, "damage_model", None)
+        if damage is not None:
+            damage = self._guard("UPS502", damage, lambda: for_constitutive_model(damage, model))
+        failure = new_failure(damage, section.erosion, len(creation.particles))
+        self._guard(
+            "UPS502",
+            section,
+            lambda: initialize_damage(
+                failure.damage, failure.damage_state, creation.particles, creation.patch
+            ),
+        )
+        return failure
 
     def _attach_loads(self, simulation: Any, loads: Loads | None, creations: list[Creation]) -> None:
         if loads is None:

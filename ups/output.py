@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from ups.quantities import (
     STRESS_AT_NODES,
     TRACTIONS,
     Quantity,
+    StressHolder,
     Sum,
     nodal_quantities,
     particle_quantities,
@@ -32,6 +33,9 @@ from ups.quantities import (
 )
 from ups.run import Observer, Run
 from ups.schedule import Schedule
+
+if TYPE_CHECKING:
+    from solver.simulation import Simulation
 
 FLUSH_SECONDS = 2.0
 """How long lines of the histories may wait in memory."""
@@ -50,25 +54,14 @@ class Plan:
     ----------
     fields : variables on particles and nodes, in the deck's order, with the materials that are kept.
     histories : the same for values of which there is one a step.
-    stress : recorder of the stress at the nodes (NodalStress), where that is saved.
+    stress : holds the recorder of the stress at the nodes, once a run has made it.
     faces : faces whose tractions are saved.
     """
 
     fields: list[Quantity] = field(default_factory=list)
     histories: list[Sum] = field(default_factory=list)
-    stress: Any = None
+    stress: StressHolder = field(default_factory=StressHolder)
     faces: tuple[str, ...] = ()
-
-
-class _StressHolder:
-    """Stands between the plan, made without compiling anything, and the recorder, which needs kernels."""
-
-    def __init__(self) -> None:
-        self.recorder: Any = None
-
-    @property
-    def values(self) -> Any:
-        return self.recorder.values
 
 
 def plan_output(specification: Specification, place: Place, diagnostics: Diagnostics) -> Plan:
@@ -77,52 +70,7 @@ def plan_output(specification: Specification, place: Place, diagnostics: Diagnos
     An unknown label is an error. One that Uintah knows, but that this deck or program does not provide, is a
     warning, and the variable is left out. ``p.x`` and ``p.particleID`` are added where particles are saved.
     """
-    section = specification.DataArchiver
-    holder = _StressHolder()
-    known_fields = particle_quantities(specification) | nodal_quantities(specification, holder)
-    known_sums = sums(specification)
-    plan = Plan(stress=holder)
-    _check_intervals(section, place, diagnostics)
-    for save in section.save:
-        materials = _chosen(save, "material", place, diagnostics)
-        levels = _chosen(save, "levels", place, diagnostics)
-        _check_materials(save, materials, specification, place, diagnostics)
-        if levels is not None and not levels & {0, -1}:
-            continue
-        if save.label in known_fields:
-            quantity = known_fields[save.label]
-            variable = replace(quantity.variable, compression=save.compression)
-            kept = _kept(save, quantity.materials, materials, place, diagnostics)
-            plan.fields.append(replace(quantity, variable=variable, materials=kept))
-        elif save.label in known_sums:
-            history = known_sums[save.label]
-            plan.histories.append(replace(history, materials=_kept(save, history.materials, materials, place, diagnostics)))
-        else:
-            _say_unknown(save, {*known_fields, *known_sums}, place, diagnostics)
-    _merge(plan)
-    _add_identity(plan, known_fields)
-    plan.faces = tuple(
-        face
-        for face in specification.MPM.boundary_traction_faces
-        if any(h.variable.name in {f"{name}_{face}" for name in TRACTIONS} for h in plan.histories)
-    )
-    return plan
-
-
-def _check_intervals(section: DataArchiver, place: Place, diagnostics: Diagnostics) -> None:
-    at = place(section)
-    outputs = bool(section.outputInterval), bool(section.outputTimestepInterval)
-    if all(outputs):
-        diagnostics.error("UPS405", "both <outputInterval> and <outputTimestepInterval> are given; keep one", at)
-    if any(outputs) and not section.save:
-        diagnostics.error(
-            "UPS101", "an output interval is given, and no <save label=...> says what to write", at
-        )
-    checkpoint = section.checkpoint
-    if checkpoint is not None and not Schedule.of_checkpoints(checkpoint).is_active and not checkpoint.lastTimestep:
-        diagnostics.warning(
-            "UPS106", "<checkpoint> gives no interval: no checkpoint is written", place(checkpoint) or at
-        )
+    return _Planner(specification, place, diagnostics).plan()
 
 
 def parse_indices(text: str) -> set[int] | None:
@@ -140,87 +88,116 @@ def parse_indices(text: str) -> set[int] | None:
     return found or None
 
 
-def _chosen(save: Save, attribute: str, place: Place, diagnostics: Diagnostics) -> set[int] | None:
-    try:
-        return parse_indices(getattr(save, attribute))
-    except ValueError as problem:
-        diagnostics.error("UPS204", f"attribute {attribute!r}: {problem}", _attribute(save, attribute, place))
-        return None
+class _Planner:
+    """Reads the ``<save>`` tags of one deck."""
 
+    def __init__(self, specification: Specification, place: Place, diagnostics: Diagnostics) -> None:
+        self.section = specification.DataArchiver
+        self.materials = len(specification.MaterialProperties.MPM.material)
+        self.faces = specification.MPM.boundary_traction_faces
+        self.place = place
+        self.diagnostics = diagnostics
+        self.stress = StressHolder()
+        self.known_fields = particle_quantities(specification) | nodal_quantities(specification, self.stress)
+        self.known_sums = sums(specification)
+        self.fields: dict[str, Quantity] = {}
+        self.histories: dict[str, Sum] = {}
 
-def _attribute(save: Save, name: str, place: Place) -> Any:
-    element = place(save)
-    return element.attributes.get(name, element) if element is not None else None
-
-
-def _check_materials(
-    save: Save, materials: set[int] | None, specification: Specification, place: Place, diagnostics: Diagnostics
-) -> None:
-    """See that chosen materials exist; one more than the last stands for all together."""
-    count = len(specification.MaterialProperties.MPM.material)
-    missing = sorted(m for m in materials or () if not GLOBAL_MATERIAL <= m <= count)
-    if missing:
-        diagnostics.error(
-            "UPS402",
-            f"there is no material {missing[0]}: the deck has 0 to {count - 1}",
-            _attribute(save, "material", place),
+    def plan(self) -> Plan:
+        self._check_intervals()
+        for save in self.section.save:
+            self._add(save)
+        wanted = {
+            face for face in self.faces if {f"{name}_{face}" for name in TRACTIONS} & self.histories.keys()
+        }
+        return Plan(
+            fields=[q for q in self._with_identity().values() if q.materials],
+            histories=[h for h in self.histories.values() if h.materials],
+            stress=self.stress,
+            faces=tuple(face for face in self.faces if face in wanted),
         )
 
+    def _check_intervals(self) -> None:
+        section, at = self.section, self.place(self.section)
+        if (section.outputInterval or section.outputTimestepInterval) and not section.save:
+            message = "an output interval is given, and no <save label=...> says what to write"
+            self.diagnostics.error("UPS101", message, at)
+        checkpoint = section.checkpoint
+        if checkpoint is None or checkpoint.lastTimestep or Schedule.of_checkpoints(checkpoint).is_active:
+            return
+        message = "<checkpoint> gives no interval: no checkpoint is written"
+        self.diagnostics.warning("UPS106", message, self.place(checkpoint) or at)
 
-def _kept(
-    save: Save, provided: tuple[int, ...], asked: set[int] | None, place: Place, diagnostics: Diagnostics
-) -> tuple[int, ...]:
-    if asked is None:
-        return provided
-    lacking = sorted(asked - set(provided))
-    if lacking:
-        numbers = ", ".join(map(str, lacking))
-        diagnostics.warning(
-            "UPS406",
-            f"{save.label} is not there for material {numbers}: it is left out",
-            _attribute(save, "material", place),
-        )
-    return tuple(m for m in provided if m in asked)
+    def _add(self, save: Save) -> None:
+        asked = self._indices(save, "material")
+        levels = self._indices(save, "levels")
+        self._check_materials(save, asked)
+        if levels is not None and not levels & {0, -1}:
+            return
+        label = save.label
+        if label in self.known_fields:
+            field_ = self.known_fields[label]
+            kept = self._kept(save, field_.materials, asked, self.fields.get(label))
+            variable = replace(field_.variable, compression=save.compression)
+            self.fields[label] = replace(field_, variable=variable, materials=kept)
+        elif label in self.known_sums:
+            history = self.known_sums[label]
+            kept = self._kept(save, history.materials, asked, self.histories.get(label))
+            self.histories[label] = replace(history, materials=kept)
+        else:
+            self._say_unknown(save)
 
+    def _indices(self, save: Save, attribute: str) -> set[int] | None:
+        try:
+            return parse_indices(getattr(save, attribute))
+        except ValueError as problem:
+            at = self._attribute(save, attribute)
+            self.diagnostics.error("UPS204", f"attribute {attribute!r}: {problem}", at)
+            return None
 
-def _say_unknown(save: Save, provided: Iterable[str], place: Place, diagnostics: Diagnostics) -> None:
-    at = _attribute(save, "label", place)
-    if save.label in KNOWN_LABELS:
-        diagnostics.warning(
-            "UPS406", f"{save.label} is known to Uintah, and not computed for this deck: it is left out", at
-        )
-        return
-    candidates = sorted({*provided, *KNOWN_LABELS})
-    diagnostics.error(
-        "UPS406", f"there is no variable {save.label!r} to save", at, suggestion_for(save.label, candidates)
-    )
+    def _attribute(self, save: Save, name: str) -> Any:
+        element = self.place(save)
+        return element.attributes.get(name, element) if element is not None else None
 
+    def _check_materials(self, save: Save, asked: set[int] | None) -> None:
+        """See that chosen materials exist; one more than the last stands for all together."""
+        missing = sorted(m for m in asked or () if not GLOBAL_MATERIAL <= m <= self.materials)
+        if missing:
+            message = f"there is no material {missing[0]}: the deck has 0 to {self.materials - 1}"
+            self.diagnostics.error("UPS402", message, self._attribute(save, "material"))
 
-def _merge(plan: Plan) -> None:
-    """Put together labels that are saved more than once, such as once a material; drop what has none left."""
-    merged: dict[str, Any] = {}
-    for item in [*plan.fields, *plan.histories]:
-        before = merged.get(item.variable.name)
-        materials = {*item.materials, *(before.materials if before else ())}
-        merged[item.variable.name] = replace(before or item, materials=tuple(sorted(materials)))
-    kept = [item for item in merged.values() if item.materials]
-    plan.fields = [item for item in kept if isinstance(item, Quantity)]
-    plan.histories = [item for item in kept if isinstance(item, Sum)]
+    def _kept(
+        self, save: Save, provided: tuple[int, ...], asked: set[int] | None, before: Quantity | Sum | None
+    ) -> tuple[int, ...]:
+        """The materials to save for: those asked for that have the variable, and those of an earlier tag."""
+        lacking = sorted((asked or set()) - set(provided))
+        if lacking:
+            message = f"{save.label} is not there for material {', '.join(map(str, lacking))}: it is left out"
+            self.diagnostics.warning("UPS406", message, self._attribute(save, "material"))
+        chosen = set(provided) if asked is None else asked
+        return tuple(m for m in provided if m in chosen or (before is not None and m in before.materials))
 
+    def _say_unknown(self, save: Save) -> None:
+        label, at = save.label, self._attribute(save, "label")
+        if label in KNOWN_LABELS:
+            message = f"{label} is known to Uintah, and not computed for this deck: it is left out"
+            self.diagnostics.warning("UPS406", message, at)
+            return
+        candidates = sorted({*self.known_fields, *self.known_sums, *KNOWN_LABELS})
+        message = f"there is no variable {label!r} to save"
+        self.diagnostics.error("UPS406", message, at, suggestion_for(label, candidates))
 
-def _add_identity(plan: Plan, known: dict[str, Quantity]) -> None:
-    """Positions and identities belong to any particle variable; positions of all materials that have one."""
-    particles = [q for q in plan.fields if q.variable.is_particle]
-    if not particles:
-        return
-    materials = tuple(sorted({m for q in particles for m in q.materials}))
-    saved = {q.variable.name: q for q in particles}
-    rest = [q for q in plan.fields if q.variable.name not in (POSITION, IDENTITY)]
-    heads = [
-        replace(known[label], materials=materials, variable=saved.get(label, known[label]).variable)
-        for label in (POSITION, IDENTITY)
-    ]
-    plan.fields = [*heads, *rest]
+    def _with_identity(self) -> dict[str, Quantity]:
+        """Positions and identities go with any particle variable, for all materials that have one."""
+        particles = [q for q in self.fields.values() if q.variable.is_particle]
+        if not particles:
+            return self.fields
+        materials = tuple(sorted({m for q in particles for m in q.materials}))
+        heads = {
+            label: replace(self.fields.get(label, self.known_fields[label]), materials=materials)
+            for label in (POSITION, IDENTITY)
+        }
+        return heads | {label: q for label, q in self.fields.items() if label not in heads}
 
 
 def archive_grid(grid: Grid) -> ArchiveGrid:
@@ -246,9 +223,10 @@ def reduction_format(section: DataArchiver) -> ReductionFormat:
 class TimestepOutput(Observer):
     """Writes the variables on particles and nodes when they are due."""
 
-    def __init__(self, writer: ArchiveWriter, plan: Plan, schedule: Schedule, *, at_start: bool = False) -> None:
+    def __init__(
+        self, writer: ArchiveWriter, plan: Plan, schedule: Schedule, *, at_start: bool = False
+    ) -> None:
         self.schedule = schedule
-        self.written = 0
         self._writer = writer
         self._plan = plan
         self._at_start = at_start
@@ -257,10 +235,7 @@ class TimestepOutput(Observer):
     def begin(self, run: Run) -> None:
         """Set up recorders, and write the state at the start where the deck asks for it."""
         if any(q.variable.name == STRESS_AT_NODES for q in self._plan.fields):
-            from solver.nodal_stress import NodalStress
-
-            self._plan.stress.recorder = NodalStress()
-            self._plan.stress.recorder.attach(run.simulation)
+            self._plan.stress.attach(run.simulation)
         if self._at_start and run.simulation.step_number == 0 and self.schedule.is_active:
             self._due = True
             self._write(run, initial=True)
@@ -271,8 +246,7 @@ class TimestepOutput(Observer):
         self._due = self.schedule.is_active and self.schedule.due(
             simulation.time + dt, simulation.step_number + 1, run.wall_time, run.is_last
         )
-        if self._plan.stress.recorder is not None:
-            self._plan.stress.recorder.wanted = self._due
+        self._plan.stress.want(self._due)
 
     def after_step(self, run: Run) -> None:
         """Write the step if it is due."""
@@ -291,7 +265,6 @@ class TimestepOutput(Observer):
             if q.initially or not initial
         }
         self._writer.write_timestep(simulation.step_number, simulation.time, run.dt, fields)
-        self.written += 1
         self.schedule.done(simulation.time, simulation.step_number, run.wall_time)
 
 
@@ -318,8 +291,9 @@ class HistoryOutput(Observer):
 
             FaceTractions(self._plan.faces).attach(simulation)
         if self._at_start and simulation.step_number == 0:
-            accumulated = [h for h in self._plan.histories if h.variable.name == ACCUMULATED]
-            self._writer.append_reductions(0, simulation.time, {h.variable: {GLOBAL_MATERIAL: 0.0} for h in accumulated})
+            known = [h.variable for h in self._plan.histories if h.variable.name == ACCUMULATED]
+            values = {variable: {GLOBAL_MATERIAL: 0.0} for variable in known}
+            self._writer.append_reductions(0, simulation.time, values)
 
     def after_step(self, run: Run) -> None:
         """Add the lines of the step."""
@@ -327,7 +301,7 @@ class HistoryOutput(Observer):
         self.accumulated += float(simulation.reductions.get(("StrainEnergy", GLOBAL_MATERIAL), 0.0))
         simulation.reductions[ACCUMULATED, GLOBAL_MATERIAL] = self.accumulated
         values = {
-            h.variable: {m: simulation.reductions.get((h.variable.name, m), _zero(h.variable)) for m in h.materials}
+            h.variable: {m: _value(simulation, h.variable, m) for m in h.materials}
             for h in self._plan.histories
         }
         self._writer.append_reductions(simulation.step_number, simulation.time, values, last=run.is_last)
@@ -336,11 +310,13 @@ class HistoryOutput(Observer):
             self._flushed = time.monotonic()
 
 
-def _zero(variable: Variable) -> Any:
-    return np.zeros(variable.element_type.shape)
+def _value(simulation: Simulation, variable: Variable, material: int) -> Any:
+    """The value of the last step; zero where nothing acted, such as a contact law before its time."""
+    value = simulation.reductions.get((variable.name, material))
+    return np.zeros(variable.element_type.shape) if value is None else value
 
 
 def check_output(deck: Deck) -> None:
-    """Add to a deck's diagnostics what is wrong with the variables that it saves, without building anything."""
+    """Add to a deck's diagnostics what is wrong with what it saves, without building anything."""
     if deck.specification is not None:
         plan_output(deck.specification, deck.reader.place, deck.diagnostics)

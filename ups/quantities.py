@@ -18,6 +18,7 @@ from ups.deck import Specification
 
 if TYPE_CHECKING:
     from solver.grid import Grid
+    from solver.nodal_stress import NodalStress
     from solver.simulation import Simulation
 
 Array = NDArray[Any]
@@ -86,12 +87,45 @@ class Sum:
     materials: tuple[int, ...]
 
 
+class StressHolder:
+    """Stands for the recorder of nodal stress in a plan, which is made without compiling anything."""
+
+    def __init__(self) -> None:
+        self._recorder: NodalStress | None = None
+
+    def attach(self, simulation: Simulation) -> None:
+        """Make the recorder, and let it watch a simulation."""
+        from solver.nodal_stress import NodalStress
+
+        self._recorder = NodalStress()
+        self._recorder.attach(simulation)
+
+    def want(self, wanted: bool) -> None:
+        """Say whether the coming step is to be recorded."""
+        if self._recorder is not None:
+            self._recorder.wanted = wanted
+
+    @property
+    def values(self) -> Array:
+        """What was recorded last, (M, N, 3, 3).
+
+        Raises
+        ------
+        RuntimeError : nothing records.
+        """
+        if self._recorder is None:
+            raise RuntimeError("the stress at the nodes is not recorded")
+        return self._recorder.values
+
+
 def particle_quantities(specification: Specification) -> dict[str, Quantity]:
     """Everything that particles carry, by label: what all have, and what their materials' models add."""
     models = [m.constitutive_model for m in specification.MaterialProperties.MPM.material]
     found = {
         variable.label: Quantity(
-            Variable(variable.label, PARTICLE, variable.element), tuple(range(len(models))), _of_particles(name)
+            Variable(variable.label, PARTICLE, variable.element),
+            tuple(range(len(models))),
+            _of_particles(name),
         )
         for name, variable in state_variables(Particles).items()
         if variable.label
@@ -133,8 +167,8 @@ def _particle_edges(simulation: Simulation, m: int) -> Array:
     return np.asarray(particles.deformation_gradient @ edges)
 
 
-def nodal_quantities(specification: Specification, stress: Any) -> dict[str, Quantity]:
-    """Everything at the nodes, by label; ``stress`` is the recorder (NodalStress) of the stress there."""
+def nodal_quantities(specification: Specification, stress: StressHolder) -> dict[str, Quantity]:
+    """Everything at the nodes, by label; ``stress`` records the stress there."""
     count = len(specification.MaterialProperties.MPM.material)
     each, with_all = tuple(range(count)), tuple(range(count + 1))
     found = {}
@@ -160,7 +194,7 @@ def _of_nodes(field: str, mean: Callable[[Any, Array], Array] | None) -> Callabl
     return values
 
 
-def _stress_at_nodes(stress: Any) -> Callable[[Simulation, int], Array]:
+def _stress_at_nodes(stress: StressHolder) -> Callable[[Simulation, int], Array]:
     def values(simulation: Simulation, m: int) -> Array:
         if m < len(simulation.bodies):
             return on_lattice(simulation.grid, stress.values[m])
@@ -199,7 +233,7 @@ _MEANS: dict[str, Callable[[Any, Array], Array]] = {
 def on_lattice(grid: Grid, nodal: Array) -> Array:
     """The nodes that an archive stores, of a field (N, ...) over all stored nodes: a view [x, y, z, ...].
 
-    Those are the nodes of the domain and of its extra cells; where it is periodic, the last node is the first.
+    Those are the nodes of the domain and its extra cells; where it is periodic, the last node is the first.
     """
     box, ranges = grid.as_box(nodal), []
     for axis in range(3):

@@ -75,14 +75,17 @@ class Reader(ValueReader):
         """The record that was read from an element, or None where that failed."""
         return self._records.get(id(element))
 
-    def read(self, record: type[Record], element: Element, chosen_by: str = "") -> Record | None:
+    def read(
+        self, record: type[Record], element: Element, chosen_by: str = "", family: Family | None = None
+    ) -> Record | None:
         """Read a record from the children and attributes of an element, or return None after diagnostics.
 
-        ``chosen_by`` says what chose the record: a child's tag, ``"@"`` and an attribute, or ``"text"``.
+        ``chosen_by`` says what chose the record: a child's tag, ``"@"`` and an attribute, or ``"text"``;
+        ``family`` is the family that it was chosen from.
         """
         errors = self.errors
         children = _Children(element)
-        self._check_children(record, element, children, chosen_by)
+        self._check_children(record, element, children, chosen_by, family)
         values: dict[str, Any] = {}
         for info, own in declared(record):
             value = self._field(info, element, children)
@@ -240,7 +243,8 @@ class Reader(ValueReader):
             at = element.get(given[1]) or element.attributes.get(given[1]) or element
             self.error("UPS106", f"<{element.tag}> takes only one of {names}", at, "remove one of them")
         elif not given and group.needed and self.complete:
-            self.error("UPS106", f"<{element.tag}> needs one of {names}", element)
+            what = f"one of {names}" if len(group.names) > 1 else names
+            self.error("UPS106", f"<{element.tag}> needs {what}", element, f"add {names}")
 
     # ---- models --------------------------------------------------------------------------------------------
 
@@ -250,22 +254,22 @@ class Reader(ValueReader):
         if family.key == "tag":
             found = children.of_families.get(family.name, [])
         else:
-            found = children.named(family.tag, *family.old_tags)
+            found = children.named(info.tag, *family.old_tags)
         models = [self.model(family, child) for child in found]
         if any(m is None for m in models):
             return FAILED
         if not models:
-            return self._missing_model(family, element) if info.required else info.default
+            return self._missing_model(info, family, element) if info.required else info.default
         if info.sub_model.many:
             return tuple(models)
         for extra in found[1:]:
             self.error("UPS104", f"<{element.tag}> can hold one {family.meaning} only", extra)
         return models[0]
 
-    def _missing_model(self, family: Family, element: Element) -> Any:
+    def _missing_model(self, info: FieldInfo, family: Family, element: Element) -> Any:
         if self.complete:
             choices = ", ".join(sorted(family.models)[:12])
-            what = f"<{family.tag}>" if family.tag else family.meaning
+            what = f"<{info.tag}>" if family.key != "tag" else family.meaning
             message = f"<{element.tag}> needs {what} ({family.meaning}): {choices}"
             self.error("UPS101", message, element, f"add {what}")
         return FAILED
@@ -284,7 +288,7 @@ class Reader(ValueReader):
             return self._known_model(family, key, at, element)
         if key in family.old_names:
             self._old_name(key, family.old_names[key], at)
-        return self.read(record, element, family.key)
+        return self.read(record, element, family.key, family)
 
     def _old_name(self, old: str, today: str, at: Any) -> None:
         fix = Fix((at.replaced(today),)) if isinstance(at, Attribute | Text) else None
@@ -298,7 +302,7 @@ class Reader(ValueReader):
             self._unknown_model(family, name, at)
             return None
         self.say_unsupported(f"{family.meaning}: {name!r} is a model of Uintah", at)
-        return self.read(record, element, family.key)
+        return self.read(record, element, family.key, family)
 
     def _model_name(self, family: Family, element: Element) -> tuple[str, Any]:
         """The name by which an element chooses a model, and where that name stands (None if it is missing)."""
@@ -320,9 +324,11 @@ class Reader(ValueReader):
         return child.text, child.texts[0]
 
     def _unknown_model(self, family: Family, name: str, at: Any) -> None:
-        names = [*family.models, *known_names(family.name)]
+        names = [*family.models, *(n for n in known_names(family.name) if n not in family.models)]
         nearest = did_you_mean(name, names)
-        fix = Fix((at.replaced(nearest),), safe=False) if nearest and isinstance(at, Attribute | Text) else None
+        fix = None
+        if nearest and isinstance(at, Attribute | Text):
+            fix = Fix((at.replaced(nearest),), safe=nearest.lower() == name.lower())
         self.error(
             "UPS209",
             f"{family.meaning}: unknown {name!r}; known are {', '.join(sorted(names))}",
@@ -349,12 +355,17 @@ class Reader(ValueReader):
                 self._named_pieces.define(element.tag, piece)
             return piece
         except ValueError as problem:
-            self.error("UPS410" if not element.children else "UPS407", str(problem), label or element)
+            fix = None
+            if label is not None and element.children:
+                fix = Fix((label.replaced(f"{label.value}, line {label.location.line}"),), safe=False)
+            self.error("UPS410" if not element.children else "UPS407", str(problem), label or element, None, fix)
             return None
 
     # ---- what nobody declared ------------------------------------------------------------------------------
 
-    def _check_children(self, record: type, element: Element, children: _Children, chosen_by: str) -> None:
+    def _check_children(
+        self, record: type, element: Element, children: _Children, chosen_by: str, family: Family | None
+    ) -> None:
         """Sort the children by the fields they belong to; report those that belong to none."""
         known = {chosen_by}
         by_tag: list[Family] = []
@@ -366,15 +377,26 @@ class Reader(ValueReader):
             if family.key == "tag":
                 by_tag.append(family)
             else:
-                known |= {family.tag, *family.old_tags}
+                known |= {info.tag, *family.old_tags}
         for child in element.children:
             if child.tag in known:
                 continue
             owner = next((f for f in by_tag if is_of_family(f, child.tag)), None)
             if owner is not None:
                 children.of_families.setdefault(owner.name, []).append(child)
-            else:
+            elif family is None or not self._of_another_model(child, family):
                 self._unknown_child(child, known, by_tag, children)
+
+    def _of_another_model(self, child: Element, family: Family) -> bool:
+        """Whether a child that its model does not read belongs to another model of the family; it is reported."""
+        models = [*family.models.items(), *((n, known_model(family.name, n)) for n in known_names(family.name))]
+        owners = [n for n, cls in models if cls is not None and any(i.tag == child.tag for i, _ in declared(cls))]
+        if owners:
+            parent = child.parent.tag if child.parent else ""
+            message = f"<{child.tag}> is not read by this <{parent}>: it belongs to {', '.join(owners[:4])}"
+            fix = Fix((child.removed(),), safe=False)
+            self.diagnostics.warning("UPS105", message, child, "remove it, or choose that type", fix)
+        return bool(owners)
 
     def _unknown_child(
         self, child: Element, known: Iterable[str], by_tag: list[Family], children: _Children

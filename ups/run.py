@@ -1,7 +1,7 @@
 """The loop over time steps, and the observers that write, watch and report it.
 
-The loop knows of no observer in particular: output, histories, checkpoints, progress and the handling of Ctrl-C
-each see the same calls and may ask the run to stop.
+The loop knows of no observer in particular: output, histories, checkpoints, progress and the handling of
+Ctrl-C each see the same calls and may ask the run to stop.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from solver.time_control import TimeControl
@@ -52,6 +53,9 @@ class Run:
     is_last : whether the run ends with the step that is being made or was made last.
     stop_reason : why somebody asked the run to end after the present step, or nothing.
     failed : whether an exception ended it.
+    title : title of the deck.
+    materials : what the materials are, each in a word or two.
+    directory : the archive that is written.
     """
 
     simulation: Simulation
@@ -62,6 +66,9 @@ class Run:
     is_last: bool = False
     stop_reason: str = ""
     failed: bool = False
+    title: str = ""
+    materials: Sequence[str] = ()
+    directory: Path | None = None
     first_step: int = field(init=False)
     _started: float = field(default_factory=time.perf_counter)
 
@@ -89,8 +96,8 @@ class Run:
         ------
         solver.simulation.DivergedError
             when a value is no longer a finite number.
-        StepTooSmallError
-            when a step has to be repeated with less than the deck allows.
+        StepError
+            when the time step is no positive number, or would have to be less than the deck allows.
         ups.archive.ArchiveError
             when an observer cannot write.
         """
@@ -117,10 +124,12 @@ class Run:
             observer.after_step(self)
 
     def _advance(self, dt: float) -> tuple[float, float]:
-        """Make a step, with a tenth of dt as often as nodes are too fast; return its size and the stable next."""
+        """Make a step, of a tenth of dt as often as nodes are too fast; its size, and the stable next."""
         from solver.simulation import NodesTooFastError
 
         while True:
+            if not 0.0 < dt < math.inf:
+                raise StepError(f"step {self.simulation.step_number + 1}: the time step is {dt:g}")
             self.is_last = self._ends_with(dt)
             for observer in self.observers:
                 observer.before_step(self, dt)
@@ -128,15 +137,15 @@ class Run:
                 return dt, self.simulation.advance(dt)
             except NodesTooFastError as problem:
                 dt *= 0.1
-                if dt <= 0.0 or dt < self.control.delt_min:
-                    raise StepTooSmallError(f"{problem}, and a tenth of it is less than <delt_min>") from None
+                if dt < self.control.delt_min:
+                    raise StepError(f"{problem}, and a tenth of it is less than <delt_min>") from None
 
     def _find_next_dt(self, stable: float) -> None:
         end = min((observer.end_of_step() for observer in self.observers), default=math.inf)
         self.next_dt = self.control.limit(stable, self.simulation.time, self.dt, end)
 
     def _ends_with(self, dt: float) -> bool:
-        """Whether no step follows the coming one; its cost in seconds is guessed as half more than the mean."""
+        """Whether no step follows the coming one, which may cost half more than the mean in seconds."""
         cost = 1.5 * self.wall_time / self.steps_done if self.steps_done else 0.0
         simulation = self.simulation
         return not self._goes_on(simulation.time + dt, simulation.step_number + 1, self.wall_time + cost)
@@ -145,5 +154,5 @@ class Run:
         return self.control.goes_on(time, step, wall_time)
 
 
-class StepTooSmallError(RuntimeError):
-    """A step had to be repeated with a dt below the deck's ``<delt_min>``."""
+class StepError(RuntimeError):
+    """There is no time step to go on with: it is not a positive number, or less than ``<delt_min>``."""

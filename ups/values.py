@@ -109,6 +109,8 @@ class ValueReader:
     def _sequence(self, hint: Any, text: str, at: Place, what: str) -> Any:
         args = get_args(hint)
         open_ended = args[-1] is Ellipsis
+        if open_ended and numbers(text) and "[" not in text and "]" not in text:
+            text = f"[{text}]"  # Uintah takes a list without brackets
         if not (text.startswith("[") and text.endswith("]")):
             self._not_a_vector(text, at, what, open_ended, len(args))
             return FAILED

@@ -45,32 +45,23 @@ class Axis(NamedTuple):
 
 @inline
 def averaged_hat(f: float, half: float) -> Axis:
-    """The hat function averaged over [f - half, f + half], 0 <= f < 1 measured from node i in cells."""
-    third = -1 if f <= 0.5 else 2
-    from_next = f - 1.0
-    from_third = f - third
-    if f <= half:
-        left, right = 1.0 + half - from_third, 1.0 + half + from_next
-        return Axis(
-            third,
-            1.0 - (f * f + half * half) / (2.0 * half),
-            right * right / (4.0 * half),
-            left * left / (4.0 * half),
-            -f / half,
-            right / (2.0 * half),
-            -left / (2.0 * half),
-        )
-    if f <= 1.0 - half:
-        return Axis(third, 1.0 - f, 1.0 + from_next, 0.0, -1.0, 1.0, 0.0)
-    left, right = 1.0 + half - f, 1.0 + half + from_third
+    """The hat function averaged over [f - half, f + half], 0 <= f < 1 measured from node i in cells.
+
+    Where the particle reaches over node i by a, or over node i + 1 by b, the linear weights 1 - f and f lose
+    twice a^2 / 4 half (or b^2 / 4 half) at that node and its neighbours on both sides gain it.
+    """
+    # Measured from the far node, as Uintah does: at a touch, rounding decides alike whether that node takes part.
+    a = 1.0 + half - (f + 1.0) if f <= half else 0.0
+    b = 1.0 + half + (f - 2.0) if f > 1.0 - half else 0.0
+    q = 0.25 / half
     return Axis(
-        third,
-        left * left / (4.0 * half),
-        1.0 - (from_next * from_next + half * half) / (2.0 * half),
-        right * right / (4.0 * half),
-        -left / (2.0 * half),
-        -from_next / half,
-        right / (2.0 * half),
+        -1 if a > 0.0 else 2,
+        1.0 - f - (2.0 * a * a - b * b) * q,
+        f + (a * a - 2.0 * b * b) * q,
+        (a * a + b * b) * q,
+        -1.0 + (4.0 * a + 2.0 * b) * q,
+        1.0 - (2.0 * a + 4.0 * b) * q,
+        2.0 * (b - a) * q,
     )
 
 
@@ -79,12 +70,12 @@ def tensor_product(
     grid: GridIndex, first: int, X: Axis, Y: Axis, Z: Axis, nodes: Any, weights: Any, gradients: Any
 ) -> int:
     """Products of the weights of three directions, without the nodes whose weight is zero."""
-    hx, hy, hz = grid.spacing
     row = grid.nodes[0]
     layer = row * grid.nodes[1]
-    wx, gx, ox = (X.w0, X.w1, X.w2), (X.g0 / hx, X.g1 / hx, X.g2 / hx), (0, 1, X.third)
-    wy, gy, oy = (Y.w0, Y.w1, Y.w2), (Y.g0 / hy, Y.g1 / hy, Y.g2 / hy), (0, row, Y.third * row)
-    wz, gz, oz = (Z.w0, Z.w1, Z.w2), (Z.g0 / hz, Z.g1 / hz, Z.g2 / hz), (0, layer, Z.third * layer)
+    ix, iy, iz = 1.0 / grid.spacing[0], 1.0 / grid.spacing[1], 1.0 / grid.spacing[2]
+    wx, gx, ox = (X.w0, X.w1, X.w2), (X.g0 * ix, X.g1 * ix, X.g2 * ix), (0, 1, X.third)
+    wy, gy, oy = (Y.w0, Y.w1, Y.w2), (Y.g0 * iy, Y.g1 * iy, Y.g2 * iy), (0, row, Y.third * row)
+    wz, gz, oz = (Z.w0, Z.w1, Z.w2), (Z.g0 * iz, Z.g1 * iz, Z.g2 * iz), (0, layer, Z.third * layer)
     count_x = 3 if X.w2 > 0.0 else 2
     count_y = 3 if Y.w2 > 0.0 else 2
     count_z = 3 if Z.w2 > 0.0 else 2

@@ -28,11 +28,11 @@ from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
 from solver.materials.equation_of_state import isentropic_heating, mean_stress
 from solver.materials.equation_of_state.default_hyper import DefaultHyper
+from solver.materials.failure import plastic_strain_rate
 from solver.materials.flow_stress import flow_stress, hardening_slope
 from solver.materials.melting import melting_temperature
 from solver.materials.melting.constant_melting import ConstantMelting
 from solver.materials.plasticity_state import PlasticityState, at_plastic_strain, with_thermal_properties
-from solver.materials.polar_rotation import polar_rotation
 from solver.materials.return_algorithm import PlasticReturn, PlasticTrial, return_to_yield
 from solver.materials.return_algorithm.radial_return import RadialReturn
 from solver.materials.shear_modulus import shear_modulus
@@ -44,9 +44,9 @@ from solver.materials.stability.no_check import NoCheck
 from solver.materials.yield_condition import hardening_term, yield_normal, yield_value
 from solver.materials.yield_condition.gurson import Gurson
 from solver.materials.yield_condition.rousselier import Rousselier
+from solver.materials.yield_condition.von_mises import VonMises
 from solver.particles import Array, Particles, StateVariable
 from solver.tensor import (
-    Tensor,
     determinant,
     deviator,
     double_dot,
@@ -54,8 +54,12 @@ from solver.tensor import (
     norm,
     principal_values,
     put_tensor,
+    rotation,
     symmetric,
+    Tensor,
     tensor_at,
+    to_laboratory,
+    to_material,
     trace,
 )
 
@@ -93,7 +97,7 @@ class ElasticPlastic(NamedTuple):
     bulk_modulus: Annotated[float, Parameter("bulk modulus", unit="Pa", gt=0.0)]
     shear_modulus: Annotated[float, Parameter("shear modulus", unit="Pa", ge=0.0)]
     flow_model: Annotated[Any, SubModel("flow_stress")]
-    yield_condition: Annotated[Any, SubModel("yield_condition")]
+    yield_condition: Annotated[Any, SubModel("yield_condition")] = VonMises()
     equation_of_state: Annotated[Any, SubModel("equation_of_state")] = DefaultHyper()
     shear_modulus_model: Annotated[Any, SubModel("shear_modulus")] = ConstantShear()
     melting_temp_model: Annotated[Any, SubModel("melting")] = ConstantMelting()
@@ -197,6 +201,11 @@ def __getattr__(name: str) -> type:
     raise AttributeError(f"module {__name__} has no attribute {name}")
 
 
+@implements(plastic_strain_rate, ElasticPlastic)
+def _(model: ElasticPlastic, state: Any, p: int) -> float:
+    return state.plastic_strain_rate[p]  # type: ignore[no-any-return]  # an array of numbers
+
+
 @initial_sound_speed.register
 def _(model: ElasticPlastic, density: Any, temperature: Any) -> Any:
     return np.sqrt((model.bulk_modulus + 4.0 * model.shear_modulus / 3.0) / density)
@@ -246,7 +255,7 @@ def elastic_plastic_stress(
     if not (0.0 < J <= LARGEST_EXPANSION):
         return StressUpdate(isotropic(0.0), 0.0, 0.0, 0.0, 0.0, DELETE)
     motion = kinematics(point, tensor_at(state.rotation, p), material.density / J)
-    old_stress = motion.old_rotation.T @ (point.stress @ motion.old_rotation)
+    old_stress = to_material(motion.old_rotation, point.stress)
     start = plasticity_state(model, state, p, point, material, motion, trace(old_stress) / 3.0)
     flow = deviatoric_flow(model, state, p, start, motion, old_stress, step.dt)
     dissipation = 0.0
@@ -256,8 +265,6 @@ def elastic_plastic_stress(
             model.deviatoric_stress_model,
             state[OWN_FIELDS:],
             p,
-            motion.old_rotation,
-            motion.rotation,
             elastic_rate,
             step.dt,
         )
@@ -273,7 +280,7 @@ def elastic_plastic_stress(
             localized = 1
         if localized != 0:
             porosity = 0.0
-    laboratory_stress = motion.rotation @ stress @ motion.rotation.T
+    laboratory_stress = to_laboratory(motion.rotation, stress)
     work = 0.0
     if localized == 0:
         work = internal_work(point, motion, laboratory_stress, step.dt)
@@ -301,9 +308,9 @@ def elastic_plastic_stress(
 @inline
 def kinematics(point: Point, old_rotation: Tensor, density: float) -> Kinematics:
     """Rate of deformation in the frame that R of the old deformation gradient turns with."""
-    rate = old_rotation.T @ (symmetric(point.velocity_gradient) @ old_rotation)
+    rate = to_material(old_rotation, symmetric(point.velocity_gradient))
     return Kinematics(
-        old_rotation, polar_rotation(point.deformation_gradient), rate, deviator(rate), trace(rate), density
+        old_rotation, rotation(point.deformation_gradient), rate, deviator(rate), trace(rate), density
     )
 
 
@@ -361,7 +368,6 @@ def deviatoric_flow(
         model.deviatoric_stress_model,
         state[OWN_FIELDS:],
         p,
-        motion.old_rotation,
         motion.rate_deviator,
         start.shear_modulus,
         dt,
@@ -500,6 +506,6 @@ def is_unstable(
 @inline
 def internal_work(point: Point, motion: Kinematics, stress: Tensor, dt: float) -> float:
     """Work of the stress in the step, J: mean stress times rate times mean volume."""
-    rate = motion.rotation @ motion.rate @ motion.rotation.T
+    rate = to_laboratory(motion.rotation, motion.rate)
     mean = 0.5 * (stress + point.stress)
     return double_dot(rate, mean) * 0.5 * (point.volume + point.volume_old) * dt

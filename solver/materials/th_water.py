@@ -65,7 +65,7 @@ def _(model: THWater, density: Any, temperature: Any) -> Any:
 def th_water_stress(
     model: THWater, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
-    """Pressure as the smaller root of the equation of state, quadratic in p, in the form without cancellation."""
+    """Pressure as the smaller root of a quadratic, in the form without cancellation."""
     J = determinant(point.deformation_gradient)
     density = material.density / J
     T = point.temperature

@@ -46,7 +46,9 @@ def make_grid(
     return Grid(anchor, spacing, cells, extra, periodic, tuple(blocks))
 
 
-def fill(low: tuple[float, ...], high: tuple[float, ...], spacing: tuple[float, ...], per_cell: tuple[int, ...]) -> Any:
+def fill(
+    low: tuple[float, ...], high: tuple[float, ...], spacing: tuple[float, ...], per_cell: tuple[int, ...]
+) -> Any:
     """Positions (n, 3) of particles that fill a box evenly, ``per_cell`` in each direction of a cell."""
     axes = []
     for a, b, h, n in zip(low, high, spacing, per_cell, strict=True):
@@ -74,7 +76,15 @@ def make_body(
     particles: Particles, index: int = 0, material: Material = MATERIAL, model: Any = None, **options: Any
 ) -> Body:
     """A body, hypoelastic with E = 1 and no lateral contraction unless said."""
-    return Body(index, f"body {index}", material, model or elastic(1.0, 0.0), NoState(), particles, **options)
+    return Body(
+        index,
+        f"body {index}",
+        material,
+        elastic(1.0, 0.0) if model is None else model,
+        NoState(),
+        particles,
+        **options,
+    )
 
 
 def elastic(youngs_modulus: float, poissons_ratio: float) -> HypoElastic:
@@ -84,17 +94,24 @@ def elastic(youngs_modulus: float, poissons_ratio: float) -> HypoElastic:
 
 
 def make_simulation(
-    grid: Grid, bodies: list[Body], interpolator: Any = None, regions: Any = (), gravity: Any = (0.0, 0.0, 0.0),
-    flags: Any = None, **options: Any
+    grid: Grid,
+    bodies: list[Body],
+    interpolator: Any = None,
+    regions: Any = (),
+    gravity: Any = (0.0, 0.0, 0.0),
+    flags: Any = None,
+    **options: Any,
 ) -> Simulation:
     """A simulation with gimp unless said; ``flags`` is a dict of options of the method."""
-    interpolator = interpolator or Gimp()
+    interpolator = Gimp() if interpolator is None else interpolator  # records without fields are false
     extra_nodes = not isinstance(interpolator, (Linear, LinearAxisymmetric))
     conditions = BoundaryConditions(regions, grid, len(bodies), extra_nodes)
     return Simulation(grid, bodies, interpolator, Flags(**(flags or {})), gravity, conditions, **options)
 
 
-def whole_side(face: str, label: str, kind: str, value: float | tuple[float, float, float] = 0.0, material: int = -1) -> Region:
+def whole_side(
+    face: str, label: str, kind: str, value: float | tuple[float, float, float] = 0.0, material: int = -1
+) -> Region:
     """One condition on a whole face."""
     vector = value if isinstance(value, tuple) else (value, value, value)
     return Region(face, (Condition(label, kind, material, vector),))

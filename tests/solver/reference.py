@@ -7,6 +7,7 @@ G (particles, nodes, 3). The kernels are held against this.
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ import numpy as np
 from solver.grid import Grid
 from solver.particles import Particles
 
-# ---- one direction, distances q from a node in cells ---------------------------------------------------------
+# ---- one direction, distances q from a node in cells -----------------------------------------------------
 
 
 def hat(q: Any) -> Any:
@@ -53,7 +54,7 @@ def spline_slope(q: Any) -> Any:
     return averaged_slope(q, 0.5)
 
 
-# ---- three directions ----------------------------------------------------------------------------------------
+# ---- three directions ------------------------------------------------------------------------------------
 
 
 def offsets(grid: Grid, positions: Any) -> Any:
@@ -88,10 +89,10 @@ def bspline(grid: Grid, positions: Any, *_: Any) -> tuple[Any, Any]:
 
 
 def cpdi(grid: Grid, positions: Any, size: Any, F: Any) -> tuple[Any, Any]:
-    """Particles are parallelepipeds: S is the mean of their corners' S; G the exact mean gradient of that interpolation.
+    """Particles are parallelepipeds: S is the mean of their corners' S.
 
-    The gradient of the function that is trilinear in the particle's own coordinates and takes the corners' values,
-    averaged over the particle, is sum over corners of S_corner s / 4 . R^-1 with s the signs of the corner.
+    G is the mean over the particle of the gradient of the function that is trilinear in its own coordinates
+    and takes the corners' values: the sum over corners of S_corner s / 4 . R^-1, s the signs of the corner.
     """
     edges = F @ size * np.array(grid.spacing)[:, None]
     S = np.zeros((len(positions), grid.number_of_nodes))
@@ -119,13 +120,13 @@ def cpti(grid: Grid, positions: Any, size: Any, F: Any) -> tuple[Any, Any]:
     return S, G
 
 
-# ---- bodies of revolution: x is the radius, y the axis; the two layers of nodes share alike ------------------
+# ---- bodies of revolution: x is the radius, y the axis; the two layers of nodes share alike --------------
 
 
 def revolved(radial: tuple[Any, Any, Any, Any], axial: tuple[Any, Any], grid: Grid) -> tuple[Any, Any]:
     """S and (dS/dr, dS/dz, S/r) from radial (S, S that goes with dS/dz, slope, S/r) and axial (S, slope)."""
     w, v, slope, hoop = radial
-    layers = (0 <= grid.node_positions()[:, 2]) & (grid.node_positions()[:, 2] <= grid.spacing[2] * 1.5)
+    layers = (grid.node_positions()[:, 2] >= 0) & (grid.node_positions()[:, 2] <= grid.spacing[2] * 1.5)
     share = 0.5 * layers[None, :]
     y, dy = axial
     G = np.stack([slope * y / grid.spacing[0], v * dy / grid.spacing[1], hoop * y], axis=-1)
@@ -141,14 +142,14 @@ def linear_axisymmetric(grid: Grid, positions: Any, *_: Any) -> tuple[Any, Any]:
 
 
 def radius_weighted(function: Callable[[Any], Any], grid: Grid, r: float, half: float, power: int) -> Any:
-    """The integral of function(q) r^power over the part of a ring beyond the axis, over that of r, at each node."""
+    """The integral of function(q) r^power over a ring beyond the axis, over that of r, at each node."""
     nodes = grid.node_positions()[:, 0]
     h = grid.spacing[0]
     low, high = max(0.0, r - half * h), r + half * h
-    knots = np.unique(np.clip(nodes, low, high).tolist() + [low, high])
+    knots = np.unique([*np.clip(nodes, low, high), low, high])
     points, weights = np.polynomial.legendre.leggauss(4)
     total, area = np.zeros(len(nodes)), 0.0
-    for a, b in zip(knots[:-1], knots[1:], strict=True):
+    for a, b in pairwise(knots):
         x, w = 0.5 * (a + b) + 0.5 * (b - a) * points, 0.5 * (b - a) * weights
         total += function((x[None, :] - nodes[:, None]) / h) * x**power @ w
         area += x @ w
@@ -167,7 +168,7 @@ def gimp_axisymmetric(grid: Grid, positions: Any, size: Any, *_: Any) -> tuple[A
     return revolved((w, w, slope, hoop), (averaged(q, half_y), averaged_slope(q, half_y)), grid)
 
 
-# ---- the step ------------------------------------------------------------------------------------------------
+# ---- the step --------------------------------------------------------------------------------------------
 
 
 def to_grid(
@@ -222,12 +223,16 @@ def flip(particles: Particles, S: Any, velocity_star: Any, acceleration: Any, dt
 def xpic2(
     particles: Particles, S: Any, velocity: Any, velocity_star: Any, acceleration: Any, dt: float
 ) -> tuple[Any, Any]:
-    """New positions and velocities by the filter of order two, Hammerquist and Nairn (2017), their eqs. 26 and 27."""
+    """New positions and velocities by the filter of order two, Hammerquist and Nairn (2017)."""
     mass = S.T @ particles.mass
     to_nodes = np.divide(S.T * particles.mass, mass[:, None], out=np.zeros_like(S.T), where=mass[:, None] > 0)
     once = S @ velocity
     twice = S @ to_nodes @ once
     a = S @ acceleration
     v = 2.0 * once - twice + dt * a
-    x = particles.position + dt * S @ velocity_star - 0.5 * dt * (dt * a + particles.velocity - 2.0 * once + twice)
+    x = (
+        particles.position
+        + dt * S @ velocity_star
+        - 0.5 * dt * (dt * a + particles.velocity - 2.0 * once + twice)
+    )
     return x, v

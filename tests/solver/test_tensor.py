@@ -52,7 +52,7 @@ RESULTS = 13
 
 @kernel
 def algebra(pairs, s, results):
-    """Every operation on each pair (n, 2, 3, 3) of tensors; numbers come back as multiples of the identity."""
+    """Every operation on each pair (n, 2, 3, 3) of tensors; numbers come back times the identity."""
     for p in range(pairs.shape[0]):
         a, b = tensor_at(pairs[p], 0), tensor_at(pairs[p], 1)
         put_tensor(results[p], 0, a + b)
@@ -134,6 +134,10 @@ def stretched(stretch, vector):
     return Rotation.from_rotvec(vector).as_matrix() @ turned(stretch, np.array([0.3, -0.5, 0.8]))
 
 
+ITERATION = 2e-8
+"""The iteration for R ends where the square of its error no longer counts beside one: half the digits."""
+
+
 def sample_deformations():
     random = np.random.default_rng(2)
     return np.array(
@@ -148,7 +152,7 @@ def test_decompositions_agree_with_numpy_and_scipy(run):
     results, values = np.empty((len(F), 2, 3, 3)), np.empty((len(F), 4))
     run(F, results, values)
     np.testing.assert_allclose(results[:, 0], np.linalg.inv(F), rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(results[:, 1], [polar(f)[0] for f in F], atol=1e-11)
+    np.testing.assert_allclose(results[:, 1], [polar(f)[0] for f in F], atol=ITERATION)
     eigenvalues = np.linalg.eigvalsh((F + F.transpose(0, 2, 1)) / 2)[:, ::-1]
     size = np.linalg.norm(F, axis=(1, 2))[:, None]
     np.testing.assert_allclose(values[:, :3] / size, eigenvalues / size, atol=3e-8)
@@ -159,10 +163,10 @@ def test_decompositions_agree_with_numpy_and_scipy(run):
 def test_rotation_is_that_of_the_polar_decomposition(stretch, vector):
     F = stretched(stretch, vector)
     R = array(rotation(tensor(F)))
-    np.testing.assert_allclose(R, polar(F)[0], atol=1e-11)
-    np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-13)
+    np.testing.assert_allclose(R, polar(F)[0], atol=ITERATION)
+    np.testing.assert_allclose(R @ R.T, np.eye(3), atol=3 * ITERATION)
     U = R.T @ F
-    np.testing.assert_allclose(U, U.T, atol=1e-11)
+    np.testing.assert_allclose(U, U.T, atol=3 * ITERATION * max(stretch))
 
 
 @given(st.tuples(*[st.floats(-1.0, 1.0)] * 3), angles, st.sampled_from([1e-6, 1.0, 1e12]))
@@ -170,7 +174,7 @@ def test_principal_values_are_the_eigenvalues(values, vector, unit):
     s = unit * turned(values, vector)
     found = np.array(principal_values(tensor((s + s.T) / 2)))
     assert found[0] >= found[1] - 1e-15 * unit >= found[2] - 2e-15 * unit
-    # Where two values nearly meet, the arc cosine keeps half the digits: 3e-8 of the largest value is what holds.
+    # Where two values nearly meet, the arc cosine keeps half the digits.
     np.testing.assert_allclose(found, np.linalg.eigvalsh(s)[::-1], atol=3e-8 * unit)
 
 
@@ -181,7 +185,15 @@ def test_distinct_principal_values_are_exact_to_rounding(values):
 
 
 @pytest.mark.parametrize(
-    "values", [(0.0, 0.0, 0.0), (7.0, 7.0, 7.0), (2.0, 2.0, -1.0), (2.0, -1.0, -1.0), (1.0, 0.0, 0.0), (0.0, 0.0, -4.0)]
+    "values",
+    [
+        (0.0, 0.0, 0.0),
+        (7.0, 7.0, 7.0),
+        (2.0, 2.0, -1.0),
+        (2.0, -1.0, -1.0),
+        (1.0, 0.0, 0.0),
+        (0.0, 0.0, -4.0),
+    ],
 )
 @pytest.mark.parametrize("vector", [(0.0, 0.0, 0.0), (0.4, -1.0, 0.7)])
 def test_repeated_principal_values(values, vector):

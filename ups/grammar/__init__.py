@@ -10,7 +10,9 @@ import importlib
 import pkgutil
 from collections.abc import Callable, Iterable
 from functools import cache
-from typing import TypeVar
+from typing import Annotated, TypeVar
+
+from solver.declare import Parameter
 
 Class = TypeVar("Class", bound=type)
 
@@ -30,7 +32,7 @@ EXTENSIONS: dict[str, str] = {
 }
 """Record, as ``module:Class`` -> the section that holds the tags which this program does not run."""
 
-_PACKAGES = ("constitutive_model", "geometry", "load")
+_PACKAGES = ("constitutive_model", "damage", "geometry", "load")
 _KNOWN: dict[str, dict[str, type]] = {}
 
 
@@ -43,6 +45,20 @@ def known(family: str, *names: str) -> Callable[[Class], Class]:
         return cls
 
     return register
+
+
+def numbers(table: str) -> Callable[[Class], Class]:
+    """Class decorator: add optional numbers to a section, each line of the table being ``NAME NAME ...: meaning``."""
+
+    def add(cls: Class) -> Class:
+        for line in table.strip().splitlines():
+            names, _, meaning = line.partition(":")
+            for name in names.split():
+                cls.__annotations__[name] = Annotated[float, Parameter(meaning.strip())]
+                setattr(cls, name, 0.0)
+        return cls
+
+    return add
 
 
 @cache

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from solver.declare import family
 from solver.dispatch import generic
 from solver.materials.constitutive import Material, NoState, Step
-from solver.particles import Array, StateVariable
+from solver.particles import Array, Particles, StateVariable
 from solver.tensor import Tensor
 
 DAMAGE = family(
@@ -44,14 +44,31 @@ class ScalarDamage(NamedTuple):
     damage: Annotated[Array, StateVariable("p.damage")]
 
 
+class DamageUpdate(NamedTuple):
+    """The answer of a damage model for one particle."""
+
+    stress: Tensor
+    """Cauchy stress of the damaged particle."""
+    localized: int
+    """New failure state."""
+
+
 @generic
-def update_damage(model: Any, state: Any, p: int, point: DamagePoint, material: Material, step: Step) -> int:
-    """Update the damage of particle ``p`` in ``state``; returns its new failure state."""
+def update_damage(
+    model: Any, state: Any, p: int, point: DamagePoint, material: Material, step: Step
+) -> DamageUpdate:
+    """Update the damage of particle ``p``; the model's own ``state`` arrays are updated in place."""
     raise NotImplementedError
 
 
 @singledispatch
-def initialize_damage(model: Any, state: Any, patch: NDArray[Any]) -> None:
+def for_constitutive_model(model: Any, constitutive_model: Any) -> Any:
+    """The damage model with what it takes from the constitutive model of its material."""
+    return model
+
+
+@singledispatch
+def initialize_damage(model: Any, state: Any, particles: Particles, patch: NDArray[Any]) -> None:
     """Set the initial damage of particles; ``patch`` holds the patch id of each, (n,)."""
 
 

@@ -10,9 +10,16 @@ from numpy.typing import NDArray
 from solver.declare import Parameter, SubModel, model
 from solver.dispatch import implements
 from solver.materials.constitutive import Material, Step
-from solver.materials.damage import DamagePoint, ScalarDamage, initialize_damage, update_damage
+from solver.materials.damage import (
+    DamagePoint,
+    DamageUpdate,
+    ScalarDamage,
+    initialize_damage,
+    update_damage,
+)
 from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
+from solver.particles import Particles
 from solver.tensor import deviator, norm, trace
 
 LARGEST_EXPONENT = 700.0
@@ -46,7 +53,7 @@ class HancockMacKenzieDamage(NamedTuple):
 
 
 @initialize_damage.register
-def _(model: HancockMacKenzieDamage, state: ScalarDamage, patch: NDArray[Any]) -> None:
+def _(model: HancockMacKenzieDamage, state: ScalarDamage, particles: Particles, patch: NDArray[Any]) -> None:
     state.damage[:] = draw(
         model.initial_scalar_damage_distrib,
         model.initial_mean_scalar_damage,
@@ -63,9 +70,9 @@ def _(
     point: DamagePoint,
     material: Material,
     step: Step,
-) -> int:
+) -> DamageUpdate:
     mean, equivalent = trace(point.stress) / 3.0, math.sqrt(1.5) * norm(deviator(point.stress))
     if mean > 0.0 and equivalent > 0.0:
         exponent = min(1.5 * mean / equivalent, LARGEST_EXPONENT)
         state.damage[p] += point.plastic_strain_rate * step.dt * math.exp(exponent) / 1.65
-    return point.localized
+    return DamageUpdate(point.stress, point.localized)

@@ -10,9 +10,16 @@ from numpy.typing import NDArray
 from solver.declare import Parameter, SubModel, model
 from solver.dispatch import implements, inline
 from solver.materials.constitutive import Material, Step
-from solver.materials.damage import DamagePoint, ScalarDamage, initialize_damage, update_damage
+from solver.materials.damage import (
+    DamagePoint,
+    DamageUpdate,
+    ScalarDamage,
+    initialize_damage,
+    update_damage,
+)
 from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
+from solver.particles import Particles
 from solver.tensor import Tensor, deviator, norm, trace
 
 LARGEST_TRIAXIALITY = 1.5
@@ -51,7 +58,7 @@ class JohnsonCookDamage(NamedTuple):
 
 
 @initialize_damage.register
-def _(model: JohnsonCookDamage, state: ScalarDamage, patch: NDArray[Any]) -> None:
+def _(model: JohnsonCookDamage, state: ScalarDamage, particles: Particles, patch: NDArray[Any]) -> None:
     state.damage[:] = draw(
         model.initial_scalar_damage_distrib,
         model.initial_mean_scalar_damage,
@@ -79,10 +86,10 @@ def fracture_strain(
 @implements(update_damage, JohnsonCookDamage)
 def _(
     model: JohnsonCookDamage, state: ScalarDamage, p: int, point: DamagePoint, material: Material, step: Step
-) -> int:
+) -> DamageUpdate:
     warmer = point.temperature - material.room_temperature
     homologous = warmer / (material.melt_temperature - material.room_temperature)
     strain = fracture_strain(model, point.stress, point.plastic_strain_rate, homologous)
     damage = state.damage[p] + point.plastic_strain_rate * step.dt / strain
     state.damage[p] = damage if damage >= model.critical_scalar_damage else 0.0
-    return point.localized
+    return DamageUpdate(point.stress, point.localized)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from solver.declare import model
 from solver.dispatch import implements
 from solver.materials.constitutive import Material, Step
-from solver.materials.damage import DamagePoint, update_damage
+from solver.materials.damage import DamagePoint, DamageUpdate, update_damage
 
 
 @model("damage", "none")
@@ -16,5 +16,7 @@ class NoDamage(NamedTuple):
 
 
 @implements(update_damage, NoDamage)
-def _(model: NoDamage, state: Any, p: int, point: DamagePoint, material: Material, step: Step) -> int:
-    return point.localized
+def _(
+    model: NoDamage, state: Any, p: int, point: DamagePoint, material: Material, step: Step
+) -> DamageUpdate:
+    return DamageUpdate(point.stress, point.localized)

@@ -19,21 +19,18 @@ DEVIATORIC_STRESS = family(
 
 @generic
 def stress_increment(
-    model: Any, elements: Any, p: int, rotation: Tensor, rate: Tensor, shear_modulus: float, dt: float
+    model: Any, elements: Any, p: int, rate: Tensor, shear_modulus: float, dt: float
 ) -> Tensor:
     """Increment of the deviatoric stress of particle ``p`` if the step were elastic.
 
-    ``rate`` is the deviator of the rate of deformation in the frame of the material, from which
-    ``rotation`` leads to the laboratory; ``elements`` are the stresses (n, 3, 3) of the Maxwell elements in
-    the laboratory, if there are any.
+    ``rate`` is the deviator of the rate of deformation and ``elements`` are the stresses (n, 3, 3) of the
+    Maxwell elements, if there are any, all in the frame of the material.
     """
     raise NotImplementedError
 
 
 @generic
-def relax(
-    model: Any, elements: Any, p: int, old_rotation: Tensor, rotation: Tensor, elastic_rate: Tensor, dt: float
-) -> float:
+def relax(model: Any, elements: Any, p: int, elastic_rate: Tensor, dt: float) -> float:
     """Bring the Maxwell elements of particle ``p`` to the end of the step.
 
     ``elastic_rate`` is the deviatoric rate of deformation less its plastic part, in the frame of the

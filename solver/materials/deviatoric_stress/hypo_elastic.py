@@ -17,25 +17,11 @@ class HypoElasticDeviator(NamedTuple):
 
 @implements(stress_increment, HypoElasticDeviator)
 def _(
-    model: HypoElasticDeviator,
-    elements: Any,
-    p: int,
-    rotation: Tensor,
-    rate: Tensor,
-    shear_modulus: float,
-    dt: float,
+    model: HypoElasticDeviator, elements: Any, p: int, rate: Tensor, shear_modulus: float, dt: float
 ) -> Tensor:
     return rate * (2.0 * shear_modulus * dt)
 
 
 @implements(relax, HypoElasticDeviator)
-def _(
-    model: HypoElasticDeviator,
-    elements: Any,
-    p: int,
-    old_rotation: Tensor,
-    rotation: Tensor,
-    elastic_rate: Tensor,
-    dt: float,
-) -> float:
+def _(model: HypoElasticDeviator, elements: Any, p: int, elastic_rate: Tensor, dt: float) -> float:
     return 0.0

@@ -18,8 +18,9 @@ class HypoViscoElasticDeviator(NamedTuple):
     """Maxwell elements in parallel: s = sum s_j, s_j' = 2 mu_j dev(d) - s_j / tau_j.
 
     The stress rate of an element below 1e-4 of its elastic part is dropped, as in Uintah, where saturated
-    stress drifted off otherwise. The elements turn with the material (Uintah leaves them in place, which
-    differs where the material rotates). A step longer than a relaxation time is unstable.
+    stress drifted off otherwise. The elements are kept in the frame of the material and turn with it; those
+    of Uintah do not, which differs where the material rotates. A step longer than a relaxation time is
+    unstable.
     """
 
     tau: Annotated[tuple[float, ...], Parameter("relaxation times", unit="s", gt=0.0)]
@@ -34,38 +35,23 @@ class HypoViscoElasticDeviator(NamedTuple):
 
 @implements(stress_increment, HypoViscoElasticDeviator)
 def _(
-    model: HypoViscoElasticDeviator,
-    elements: Any,
-    p: int,
-    rotation: Tensor,
-    rate: Tensor,
-    shear_modulus: float,
-    dt: float,
+    model: HypoViscoElasticDeviator, elements: Any, p: int, rate: Tensor, shear_modulus: float, dt: float
 ) -> Tensor:
     stress_rate = isotropic(0.0)
     for j in range(len(model.tau)):
         elastic = 2.0 * model.mu[j] * rate
-        stress = rotation.T @ tensor_at(elements[j], p) @ rotation
-        relaxing = elastic - stress * (1.0 / model.tau[j])
+        relaxing = elastic - tensor_at(elements[j], p) * (1.0 / model.tau[j])
         if norm(relaxing) > STEADY * norm(elastic):
             stress_rate = stress_rate + relaxing
     return stress_rate * dt
 
 
 @implements(relax, HypoViscoElasticDeviator)
-def _(
-    model: HypoViscoElasticDeviator,
-    elements: Any,
-    p: int,
-    old_rotation: Tensor,
-    rotation: Tensor,
-    elastic_rate: Tensor,
-    dt: float,
-) -> float:
+def _(model: HypoViscoElasticDeviator, elements: Any, p: int, elastic_rate: Tensor, dt: float) -> float:
     power = 0.0
     for j in range(len(model.tau)):
-        stress = old_rotation.T @ tensor_at(elements[j], p) @ old_rotation
+        stress = tensor_at(elements[j], p)
         stress = stress + (2.0 * model.mu[j] * elastic_rate - stress * (1.0 / model.tau[j])) * dt
         power += double_dot(stress, stress) / (2.0 * model.mu[j] * model.tau[j])
-        put_tensor(elements[j], p, rotation @ stress @ rotation.T)
+        put_tensor(elements[j], p, stress)
     return power

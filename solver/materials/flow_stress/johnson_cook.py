@@ -62,7 +62,8 @@ def _(model: JohnsonCook, state: PlasticityState) -> float:
     if state.plastic_strain <= 0.0:
         return 0.0
     factors = rate_factor(model, state.strain_rate) * thermal_factor(model, state.temperature)
-    return model.B * model.n * factors * state.plastic_strain ** (model.n - 1.0)
+    hardening = model.B * state.plastic_strain**model.n
+    return model.n * hardening * factors / state.plastic_strain
 
 
 @implements(rate_slope, JohnsonCook)

@@ -31,7 +31,7 @@ class LinearMelting(NamedTuple):
     def faults(self) -> list[tuple[str, str]]:
         """Fields that do not go together, each with what is wrong."""
         if self.a == NOT_GIVEN and self.b == NOT_GIVEN and self.Gamma_0 == NOT_GIVEN:
-            return [("a", "give a, b or Gamma_0: without one the melting temperature is not linear in anything")]
+            return [("a", "give a, b or Gamma_0, without which the law has no slope")]
         return []
 
 

@@ -27,8 +27,9 @@ class BandDeterminant(NamedTuple):
 def band_determinant(stress: Tensor, tangent: TangentModulus) -> BandDeterminant:
     """The determinant whose roots are the slopes of possible bands.
 
-    After Becker (2002), Int. J. Solids Struct. 39, 3555. The yield normal has the principal directions of the stress, so principal values are all that is needed.
-    Uintah takes components along the axes of the material instead.
+    After Becker (2002), Int. J. Solids Struct. 39, 3555. The yield normal has the principal directions of
+    the stress, so principal values are all that is needed. Uintah takes components along the axes of the
+    material instead.
     """
     sigma = principal_values(stress)
     flow = principal_values(tangent.direction)

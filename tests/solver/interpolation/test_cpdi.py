@@ -19,7 +19,7 @@ def domain(interpolator, F, size):
 
 
 def test_undeformed_box_inside_a_cell_equals_gimp():
-    """The mean over corners is the mean over the box as long as the hat functions are straight over the box."""
+    """The mean over corners is that over the box as long as the hat functions are straight over it."""
     random = np.random.default_rng(3)
     inside = random.uniform(0.26, 0.74, (20, 3)) + random.integers(1, 4, (20, 3))
     positions = np.array(GRID.anchor) + inside * np.array(GRID.spacing)
@@ -62,7 +62,7 @@ def test_long_half_diagonals_are_cut_to_the_critical_length():
 
 
 def test_a_box_with_some_long_half_diagonals_is_fitted_to_the_cut_ones():
-    """Four half diagonals over-determine three edges, which are their least-squares fit (Homel et al. 2016)."""
+    """Four half diagonals over-determine three edges, which are their least-squares fit."""
     F = np.array([[1.0, 2.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     signs = np.array([[1, 1, -1, -1], [1, -1, 1, -1], [1, 1, 1, 1]])
     diagonals = 0.5 * F @ signs
@@ -75,7 +75,9 @@ def test_a_box_with_some_long_half_diagonals_is_fitted_to_the_cut_ones():
 
 
 def test_sums_hold_for_cut_domains_and_for_corners_beyond_the_grid():
-    positions = np.concatenate([sample_positions(GRID, 10, margin=1.5), sample_positions(GRID, 10, margin=0.1)])
+    positions = np.concatenate(
+        [sample_positions(GRID, 10, margin=1.5), sample_positions(GRID, 10, margin=0.1)]
+    )
     stretch = np.diag([6.0, 1.0, 0.5])
     for interpolator in (Cpdi(0.5), Cpdi()):
         S, G = Rows(interpolator, GRID, positions, SIZES, stretch).dense()
@@ -102,8 +104,10 @@ def test_rings_keep_the_sums_and_the_hoop_column():
 
 
 def test_gradients_of_rings_lack_the_hoop_stretch():
-    """As documented: the area of the section is taken with the hoop stretch, so gradients are 1/F33 of the true."""
+    """As documented: the section's area holds the hoop stretch, so gradients are 1/F33 of the true ones."""
     positions, F = rings()
     _, G = Rows(CpdiAxisymmetric(), PLANE, positions, np.diag([0.5, 0.5, 1.0]), F).dense()
     gradient = np.einsum("ni,pnj->pij", PLANE.node_positions()[:, :2], G[..., :2])
-    np.testing.assert_allclose(gradient * F[:, 2, 2][:, None, None], np.tile(np.eye(2), (30, 1, 1)), atol=1e-12)
+    np.testing.assert_allclose(
+        gradient * F[:, 2, 2][:, None, None], np.tile(np.eye(2), (30, 1, 1)), atol=1e-12
+    )

@@ -45,7 +45,9 @@ def test_gradient_is_that_of_the_linear_function_through_the_corners():
 
 
 def test_corners_are_drawn_in_to_the_critical_length():
-    r = particle_domain(Cpti(0.2), Tensor(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), Tensor(*EDGES.ravel()))
+    r = particle_domain(
+        Cpti(0.2), Tensor(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0), Tensor(*EDGES.ravel())
+    )
     edges = np.array([[r.xx, r.xy, r.xz], [r.yx, r.yy, r.yz], [r.zx, r.zy, r.zz]])
     first = -EDGES.sum(axis=1) / 4
     whole = np.array([first, *(first + EDGES.T)])

@@ -21,7 +21,9 @@ def test_a_particle_on_a_node_belongs_to_that_node_alone():
     node = GRID.flat(2, 2, 2)
     assert S[0, node] == 1.0
     assert S[0].sum() == 1.0
-    np.testing.assert_allclose(G[0, node], -1.0 / np.array(GRID.spacing))  # of the cell above, as floor chooses
+    np.testing.assert_allclose(
+        G[0, node], -1.0 / np.array(GRID.spacing)
+    )  # of the cell above, as floor chooses
 
 
 def test_rings_agree_with_the_equations():
@@ -40,7 +42,9 @@ def test_rings_keep_the_sums_and_reproduce_lines():
     np.testing.assert_allclose(S @ nodes, positions, atol=1e-13)
     np.testing.assert_allclose(G[..., :2].sum(axis=1), 0.0, atol=1e-12)
     np.testing.assert_allclose(G[..., 2].sum(axis=1), 1.0 / positions[:, 0])
-    np.testing.assert_allclose(np.einsum("ni,pnj->pij", nodes[:, :2], G[..., :2]), np.tile(np.eye(2), (25, 1, 1)), atol=1e-12)
+    np.testing.assert_allclose(
+        np.einsum("ni,pnj->pij", nodes[:, :2], G[..., :2]), np.tile(np.eye(2), (25, 1, 1)), atol=1e-12
+    )
 
 
 def test_uniform_expansion_has_the_same_hoop_strain_up_to_the_axis():

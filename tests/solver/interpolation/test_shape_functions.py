@@ -1,4 +1,4 @@
-"""What all interpolators have in common, and their agreement with dense matrices written from the equations."""
+"""What all interpolators have in common, and their agreement with the dense reference."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def case(request):
 
 
 def test_agrees_with_the_equations(case):
-    interpolator, formula, rows = case
+    _, formula, rows = case
     size = np.broadcast_to(SIZES, (len(POSITIONS), 3, 3))
     S, G = formula(GRID, POSITIONS, size, DEFORMATIONS)
     got_S, got_G = rows.dense()
@@ -52,7 +52,9 @@ def test_linear_fields_are_reproduced(case):
     S, G = case[2].dense()
     nodes = GRID.node_positions()
     np.testing.assert_allclose(S @ nodes, POSITIONS, atol=1e-13)
-    np.testing.assert_allclose(np.einsum("ni,pnj->pij", nodes, G), np.broadcast_to(np.eye(3), (len(G), 3, 3)), atol=1e-12)
+    np.testing.assert_allclose(
+        np.einsum("ni,pnj->pij", nodes, G), np.broadcast_to(np.eye(3), (len(G), 3, 3)), atol=1e-12
+    )
 
 
 def test_weights_are_not_negative_and_few(case):
@@ -78,7 +80,8 @@ def test_gradients_are_derivatives_of_weights(interpolator):
     _, G = Rows(interpolator, GRID, positions, SIZES).dense()
     for axis in range(3):
         forward, backward = (
-            Rows(interpolator, GRID, positions + sign * step * np.eye(3)[axis], SIZES).dense()[0] for sign in (1, -1)
+            Rows(interpolator, GRID, positions + sign * step * np.eye(3)[axis], SIZES).dense()[0]
+            for sign in (1, -1)
         )
         np.testing.assert_allclose(G[..., axis], (forward - backward) / (2 * step), atol=1e-8)
 
@@ -94,7 +97,7 @@ def test_boundary_particles_use_the_layer_of_extra_nodes(interpolator):
 
 def test_linear_touches_the_nodes_of_its_cell_alone():
     corner = np.array(GRID.anchor) + 0.01 * np.array(GRID.spacing)
-    nodes, weights, _ = Rows(Linear(), GRID, corner, SIZES).used(0)
+    nodes, _, _ = Rows(Linear(), GRID, corner, SIZES).used(0)
     assert len(nodes) == 8
     assert (GRID.node_positions()[nodes] >= GRID.anchor).all()
 

@@ -185,7 +185,7 @@ def test_the_adiabatic_curve_is_that_of_the_flow_model(flow_model, algorithm):
 
 
 @pytest.mark.parametrize(
-    "model", [LINEAR, JC, POROUS, VISCO, EVOLVED], ids=["linear", "jc", "porous", "visco", "evolved"]
+    "model", [LINEAR, POROUS, VISCO, EVOLVED], ids=["linear", "porous", "visco", "evolved"]
 )
 def test_the_kernel_does_what_python_does(model):
     assert_kernel_agrees(model, sample_path(12, 0.4), dt=1e-6, material=COPPER, temperature=350.0)

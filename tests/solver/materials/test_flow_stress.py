@@ -380,7 +380,16 @@ def test_thermal_stress_of_dislocation_constants():
     assert flow_stress(direct, at) > flow_stress(direct, at._replace(plastic_strain_rate=0.0))
 
 
+def test_without_thermal_activation_the_flow_stress_does_not_depend_on_rate():
+    athermal = COPPER_SCG._replace(C1=0.0, C2=0.0, energy_to_form_kink_pair=0.0, Peierls_stress=0.0)
+    assert not athermal.faults()
+    expected = 0.12e9 * (1 + 36.0 * 0.1) ** 0.45 * 46.0 / 47.7
+    for rate in (0.0, 1.0, 1.0e6):
+        assert flow_stress(athermal, state(plastic_strain_rate=rate)) == pytest.approx(expected)
+
+
 def test_missing_constants_are_faults():
+    assert COPPER_SCG._replace(Peierls_stress=0.0).faults()
     assert len(COPPER_SCG._replace(C1=0.0, dislocation_density=1.0e12).faults()) == 6
     assert ZerilliArmstrong(*[0.0] * 8).faults()
     assert not COPPER_ZA.faults() + IRON_ZA.faults()

@@ -1,0 +1,212 @@
+"""The program ``ups``: each command a few lines that call the library, imported when it is needed."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from ups.deck import Deck
+    from ups.diagnostics import DeckError
+    from ups.result import Result
+
+FAULT, INTERRUPTED = 1, 130
+"""Exit statuses: the deck or the data is at fault; Ctrl-C."""
+
+
+@contextmanager
+def _orderly(verbose: bool = False) -> Iterator[None]:
+    """Print diagnostics instead of tracebacks, and leave with the exit status that fits."""
+    from ups.archive import ArchiveError
+    from ups.diagnostics import DeckError
+
+    try:
+        yield
+    except DeckError as problem:
+        _print_error(problem)
+        sys.exit(FAULT)
+    except ArchiveError as problem:
+        _print_error(_from_archive(problem))
+        sys.exit(FAULT)
+    except KeyboardInterrupt:
+        click.echo("interrupted", err=True)
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:
+        sys.stderr.close()  # whoever read our output has gone; nothing is left to say
+        sys.exit(FAULT)
+    except Exception as problem:
+        if verbose:
+            traceback.print_exc()
+        click.echo(
+            f"internal error: {type(problem).__name__}: {problem}; please report it with the deck"
+            + ("" if verbose else " (run again with -v for details)"),
+            err=True,
+        )
+        sys.exit(FAULT)
+
+
+def _from_archive(problem: Any) -> DeckError:
+    from ups.diagnostics import DeckError, Diagnostics
+
+    diagnostics = Diagnostics()
+    diagnostics.error("UPS603", f"{problem.path}: {problem.message}", None, problem.advice or None)
+    return DeckError(diagnostics)
+
+
+def _print_error(problem: DeckError) -> None:
+    """Errors, on the standard error; warnings and notes were shown before or do not matter now."""
+    from ups.diagnostics import Severity
+
+    errors = [d for d in problem.diagnostics if d.severity is Severity.ERROR]
+    _print(errors, problem.sources)
+    click.echo(f"{len(errors)} error{'s' * (len(errors) != 1)}", err=True)
+
+
+def _print(diagnostics: Any, sources: Any) -> None:
+    from ups.diagnostics_format import render_text
+
+    text = render_text(diagnostics, sources, colour=sys.stderr.isatty())
+    if text:
+        click.echo(text, err=True)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="ups-mpm", prog_name="ups")
+def main() -> None:
+    """Read, check and run Uintah .ups decks (material point method)."""
+
+
+def _overrides(
+    context: click.Context, option: click.Parameter, given: tuple[str, ...]
+) -> list[tuple[str, str]]:
+    pairs = [text.partition("=") for text in given]
+    for path, equals, _ in pairs:
+        if not equals or not path:
+            raise click.BadParameter(f"{path!r} is not of the form PATH=VALUE, such as Time/maxTime=1e-3")
+    return [(path.strip("/ "), value) for path, _, value in pairs]
+
+
+@main.command()
+@click.argument("deck", required=False, type=click.Path())
+@click.option("--output", type=click.Path(), help="The archive to write; by default <filebase>, numbered.")
+@click.option("--restart", type=click.Path(), metavar="ARCHIVE", help="Go on from its checkpoint.")
+@click.option("--from", "step", type=click.IntRange(min=0), metavar="STEP", help="That of this step.")
+@click.option("--max-steps", type=click.IntRange(min=1), metavar="N", help="Stop after step N.")
+@click.option(
+    "--set", "overrides", multiple=True, metavar="PATH=VALUE", callback=_overrides, help="Set a tag."
+)
+@click.option("-q", "--quiet", is_flag=True, help="Print problems only.")
+@click.option("-v", "--verbose", is_flag=True, help="Print notes too, and details of internal errors.")
+def run(
+    deck: str | None,
+    output: str | None,
+    restart: str | None,
+    step: int | None,
+    max_steps: int | None,
+    overrides: list[tuple[str, str]],
+    quiet: bool,
+    verbose: bool,
+) -> None:
+    """Run DECK and write its archive, or go on with the run of an ARCHIVE.
+
+    Without --output a restart continues the archive in place.
+    """
+    if (deck is None) == (restart is None):
+        raise click.UsageError("give either a DECK or --restart ARCHIVE")
+    if step is not None and restart is None:
+        raise click.UsageError("--from belongs to --restart")
+    with _orderly(verbose):
+        from ups.deck import read_deck
+        from ups.progress import Interrupts, Progress, compilation_notice
+        from ups.session import resume_run, run_deck
+
+        go: Callable[..., Result]
+        if restart is not None:
+            go = partial(resume_run, restart, step=step, overrides=overrides)
+        else:
+            loaded = read_deck(str(deck), overrides=overrides)
+            if loaded.diagnostics.has_errors:
+                loaded.require()  # raises, before anything heavy is imported
+            go = partial(run_deck, loaded)
+        interrupts = Interrupts()
+        with nullcontext() if quiet else compilation_notice():
+            result = go(
+                output=output,
+                max_steps=max_steps,
+                observers=(interrupts,) if quiet else (interrupts, Progress()),
+                checked=_printer_of_warnings(verbose, quiet),
+            )
+        if interrupts.received:
+            click.echo(f"go on with: ups run --restart {result.directory}", err=True)
+            sys.exit(128 + interrupts.received)
+
+
+def _printer_of_warnings(verbose: bool, quiet: bool) -> Callable[[Deck], None]:
+    """A function that prints the warnings of a deck, and its notes where they are wanted."""
+    from ups.diagnostics import Severity
+
+    shown = {Severity.WARNING, Severity.NOTE} if verbose else set() if quiet else {Severity.WARNING}
+
+    def show(deck: Deck) -> None:
+        _print([d for d in deck.diagnostics if d.severity in shown], deck.sources)
+
+    return show
+
+
+@main.command()
+@click.argument("decks", nargs=-1, required=True, type=click.Path())
+@click.option("--format", "form", type=click.Choice(["text", "json", "github", "sarif"]), default="text")
+@click.option("--select", multiple=True, metavar="CODE", help="Only findings whose code begins so.")
+@click.option("--ignore", multiple=True, metavar="CODE", help="No findings whose code begins so.")
+@click.option("--jobs", type=click.IntRange(min=1), default=1, help="How many processes share the decks.")
+def lint(
+    decks: tuple[str, ...], form: str, select: tuple[str, ...], ignore: tuple[str, ...], jobs: int
+) -> None:
+    """Check DECKS, files or folders, and report every problem, without running anything.
+
+    Exit status 1 where there is an error; warnings and notes do not count.
+    """
+    with _orderly():
+        from ups.diagnostics import Severity
+        from ups.diagnostics_format import RENDERERS, render_text
+        from ups.lint import exit_status, lint_files
+
+        result = lint_files(decks, select=select, ignore=ignore, jobs=jobs)
+        if form == "text":
+            text = render_text(result.diagnostics, result.sources, colour=sys.stdout.isatty())
+            counts = [(result.diagnostics.count(severity), severity.value) for severity in Severity]
+            summary = ", ".join(f"{count} {name}{'s' * (count != 1)}" for count, name in counts)
+            click.echo(f"{text}\n{summary}" if text else summary)
+        else:
+            click.echo(RENDERERS[form](result.diagnostics, result.sources))
+        sys.exit(exit_status(result))
+
+
+@main.command()
+@click.argument("archive", type=click.Path())
+@click.argument("out", type=click.Path())
+@click.option("--variable", "variables", multiple=True, metavar="LABEL", help="Only these variables.")
+@click.option("--material", "materials", multiple=True, type=int, metavar="INDEX", help="Only these.")
+@click.option("--step", "steps", multiple=True, type=int, metavar="STEP", help="Only these; -1 is the last.")
+def convert(
+    archive: str, out: str, variables: tuple[str, ...], materials: tuple[int, ...], steps: tuple[int, ...]
+) -> None:
+    """Convert ARCHIVE to OUT: name.pvd or a folder for ParaView, name.csv, or name.npz."""
+    with _orderly():
+        from ups.convert import convert as convert_archive
+
+        files = convert_archive(
+            archive, out, variables=variables or None, materials=materials or None, steps=steps or None
+        )
+        for path in files:
+            click.echo(path)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Decks that come with the program, by component: ``inputs/MPM/*.ups``."""

@@ -1,0 +1,1 @@
+"""What the cap models Arenisca3 and Arenisca4 share: parameters, elasticity, hardening and the sub-steps."""

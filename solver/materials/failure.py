@@ -1,0 +1,108 @@
+"""Damage and erosion of a material together: what the stress update does before and after the model's own."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from solver.dispatch import generic_with_default, inline
+from solver.materials.constitutive import DELETE, Material, Point, Step, StressUpdate
+from solver.materials.damage import DamagePoint, damage_state, update_damage
+from solver.materials.damage.no_damage import NoDamage
+from solver.materials.erosion import ErosionState, erode, lets_fail, restrain
+from solver.materials.erosion.no_erosion import NoErosion
+from solver.particles import new_arrays
+
+
+class Failure(NamedTuple):
+    """How the particles of a material are damaged and what becomes of those that failed."""
+
+    damage: Any
+    damage_state: Any
+    erosion: Any
+    erosion_state: ErosionState
+
+
+def new_failure(damage: Any, erosion: Any, count: int) -> Failure:
+    """The failure of a material with ``count`` particles; None stands for no damage, or no erosion."""
+    damage = NoDamage() if damage is None else damage
+    erosion = NoErosion() if erosion is None else erosion
+    return Failure(
+        damage,
+        new_arrays(damage_state(damage), count),
+        erosion,
+        new_arrays(ErosionState, count if lets_fail(erosion) else 0),
+    )
+
+
+@generic_with_default
+def plastic_strain_rate(model: Any, state: Any, p: int) -> float:
+    """Rate of plastic strain that particle ``p`` had in the step; 0 for models without plasticity."""
+    return 0.0
+
+
+@inline
+def restrained(failure: Failure, point: Point) -> Point:
+    """The particle with the motion that its erosion algorithm leaves it, where it failed before the step."""
+    if not lets_fail(failure.erosion) or point.localized == 0:
+        return point
+    motion = restrain(
+        failure.erosion,
+        point.deformation_gradient_old,
+        point.deformation_gradient,
+        point.velocity_gradient,
+    )
+    return Point(
+        point.stress,
+        point.deformation_gradient_old,
+        motion.deformation_gradient,
+        motion.velocity_gradient,
+        point.volume_old,
+        point.volume,
+        point.mass,
+        point.temperature,
+        point.previous_temperature,
+        point.localized,
+    )
+
+
+@inline
+def weakened(
+    failure: Failure,
+    model: Any,
+    state: Any,
+    p: int,
+    point: Point,
+    new: StressUpdate,
+    material: Material,
+    step: Step,
+) -> StressUpdate:
+    """The answer of the constitutive model after damage and erosion."""
+    damaged = update_damage(
+        failure.damage,
+        failure.damage_state,
+        p,
+        DamagePoint(
+            new.stress,
+            point.deformation_gradient,
+            plastic_strain_rate(model, state, p),
+            point.temperature,
+            point.volume,
+            new.localized,
+        ),
+        material,
+        step,
+    )
+    stress = damaged.stress
+    if lets_fail(failure.erosion) and damaged.localized != DELETE:
+        if damaged.localized != point.localized:
+            failure.erosion_state.failure_time[p] = step.time
+        if damaged.localized != 0:
+            stress = erode(failure.erosion, stress, step.time - failure.erosion_state.failure_time[p])
+    return StressUpdate(
+        stress,
+        new.sound_speed,
+        new.strain_energy,
+        new.heating_rate,
+        new.artificial_pressure,
+        damaged.localized,
+    )

@@ -1,0 +1,1 @@
+"""Constitutive models of Uintah that this program does not run; each module is one model or close kin."""

@@ -1,0 +1,1 @@
+"""Shapes of Uintah that this program does not fill; each module is one shape or close kin."""

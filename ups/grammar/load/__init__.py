@@ -1,0 +1,1 @@
+"""Loads of Uintah that this program does not apply; each module is one load."""

@@ -1,0 +1,75 @@
+"""Tags of ``<material>`` and its neighbours that belong to parts of Uintah's MPM which are not run."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import solver.materials.damage
+import solver.materials.erosion
+from solver.declare import Parameter, Section, SectionOf, SubModel
+
+_UNREAD = "no part of Uintah reads it"
+
+
+class MaterialExtension(Section):
+    """What a material may say besides what this program runs."""
+
+    damage_model: Annotated[Any, SubModel("damage")] = None
+    erosion: Annotated[Any, SubModel("erosion")] = None
+    diffusion_model: Annotated[
+        Any, SectionOf("ups.grammar.diffusion:DiffusionModel"), Parameter("diffusion of a scalar", unsupported="scalar diffusion")
+    ] = None
+    do_conc_reduction: Annotated[
+        bool, Parameter("reduce the concentration over the domain", unsupported="scalar diffusion")
+    ] = False
+    water_density: Annotated[
+        float, Parameter("density of the pore water", unit="kg/m^3", ge=0.0, unsupported="coupled flow")
+    ] = 1000.0
+    porosity: Annotated[
+        float, Parameter("share of the volume that pores take", ge=0.0, le=1.0, unsupported="coupled flow")
+    ] = 0.0
+    permeability: Annotated[
+        float, Parameter("permeability of the skeleton", unit="m/s", ge=0.0, unsupported="coupled flow")
+    ] = 0.0
+    initial_pore_pressure: Annotated[
+        float, Parameter("pore pressure at the start", unit="Pa", unsupported="coupled flow")
+    ] = 0.0
+    allow_DWIndex_correction: Annotated[
+        bool, Parameter("renumber materials of a restart", ignored="materials are numbered by the deck's order")
+    ] = False
+    applied_contact_model: Annotated[bool, Parameter("a mark of contact", ignored=_UNREAD)] = False
+    stress_free: Annotated[bool, Parameter("a mark of a material without stress", ignored=_UNREAD)] = False
+    critical_density: Annotated[float, Parameter("a density", unit="kg/m^3", ignored=_UNREAD)] = 0.0
+    MatTypeIdx: Annotated[int, Parameter("a type of material", ge=0, ignored=_UNREAD)] = 0
+    deactivation_time: Annotated[
+        float, Parameter("time from which the material takes no part", unit="s", ignored=_UNREAD)
+    ] = 0.0
+
+
+class CohesiveZone(Section):
+    """Cohesive segments that tie two materials and fail by opening or sliding."""
+
+    name: Annotated[str, Parameter("a name for the reader", attribute=True)] = ""
+    sig_max: Annotated[float, Parameter("greatest normal traction", unit="Pa")]
+    tau_max: Annotated[float, Parameter("greatest tangential traction", unit="Pa")]
+    delta_n: Annotated[float, Parameter("opening at the greatest normal traction", unit="m")]
+    delta_t: Annotated[float, Parameter("sliding at the greatest tangential traction", unit="m")]
+    delta_n_fail: Annotated[float, Parameter("opening at failure", unit="m")] = 0.0
+    delta_t_fail: Annotated[float, Parameter("sliding at failure", unit="m")] = 0.0
+    cz_filename: Annotated[str, Parameter("file of the segments")]
+    do_rotation: Annotated[bool, Parameter("turn the segments with the bodies")] = False
+
+
+class MaterialsExtension(Section):
+    """What the materials of the material point method may hold besides materials and contact."""
+
+    cohesive_zone: Annotated[
+        Any,
+        SectionOf("ups.grammar.mpm_material:CohesiveZone", many=True),
+        Parameter("segments that tie materials", unsupported="cohesive zones"),
+    ] = ()
+    diffusion_interface: Annotated[
+        Any,
+        SectionOf("ups.grammar.diffusion:DiffusionInterface", many=True),
+        Parameter("exchange of a scalar between materials", unsupported="scalar diffusion"),
+    ] = ()

@@ -1,0 +1,74 @@
+"""UPS413."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ups.diagnostics import Diagnostic, did_you_mean, register_code
+from ups.element import Element
+from ups.rules.rule import DeckView, Rule
+from ups.values import numbers
+
+LABELS = (
+    "Velocity Symmetric Temperature Pressure Density SpecificVol Concentration Specific_heat Viscosity "
+    "PosCharge NegCharge cc_temperature"
+).split()
+VALUED = ("Dirichlet", "Neumann")
+WITHOUT_VALUE = ("Symmetric",)
+KINDS = (
+    "Neumann Dirichlet symmetry FreeSlipWall LODI computeFromDensity Sine slip Custom VelocityInlet StABL "
+    "PressureBC WallBC OutletBC NOutletBC VelocityFileInput MassFlowInlet PartMassFlowInlet Swirl ScalarSwirl "
+    "FromFile ForcedDirichlet TurbulentInlet Tabulated powerLawProfile logLawProfile creep MMS_1 slipFlow"
+).split()
+
+
+class BoundaryValue(Rule):
+    """A condition on a face has a kind, or a value, that does not fit what it prescribes.
+
+    **Why.** A velocity is a vector, a temperature or a pressure is a number; the kind is ``Dirichlet`` for a
+    value and ``Neumann`` for a gradient. Anything else is passed over in silence, and the face stays free.
+
+    **Example.** ``<BCType id="all" label="Velocity" var="Dirichlet"> <value>0.0</value> </BCType>``
+
+    **Repair.** Write ``[vx, vy, vz]`` for velocities, one number for all others.
+    """
+
+    code = register_code("UPS413", "boundary condition that cannot be read")
+    title = "boundary condition that cannot be read"
+
+    def check(self, deck: DeckView) -> Iterator[Diagnostic]:
+        """Look at every condition of every face."""
+        if deck.component in ("arches", "wasatch"):
+            return
+        for condition in deck.all("Grid/BoundaryConditions/Face/BCType"):
+            yield from self._check_kind(condition)
+            yield from self._check_value(condition)
+
+    def _check_kind(self, condition: Element) -> Iterator[Diagnostic]:
+        kind = condition.attributes.get("var")
+        if kind is not None and kind.value.strip() not in KINDS:
+            nearest = did_you_mean(kind.value.strip(), KINDS)
+            suggestion = f"did you mean {nearest}?" if nearest else "use Dirichlet, Neumann or symmetry"
+            yield self.error(f"unknown kind of condition {kind.value.strip()!r}", kind, suggestion)
+        label = condition.attributes.get("label")
+        name = label.value.strip() if label is not None else ""
+        if label is not None and name and name not in LABELS and not name.startswith(("scalar", "mass")):
+            nearest = did_you_mean(name, LABELS)
+            if nearest:
+                yield self.warning(f"no method has a condition on {name!r}", label, f"did you mean {nearest}?")
+
+    def _check_value(self, condition: Element) -> Iterator[Diagnostic]:
+        kind, label = condition.attributes.get("var"), condition.attributes.get("label")
+        value = condition.get("value")
+        if kind is None or label is None or kind.value.strip() not in VALUED or label.value in WITHOUT_VALUE:
+            return
+        if value is None or not value.texts:
+            yield self.error(f"the condition on {label.value} needs a <value>", value or condition)
+            return
+        found = numbers(value.text)
+        width = 3 if label.value == "Velocity" else 1
+        form = "[vx, vy, vz]" if width == 3 else "one number"
+        if found is None or len(found) != width:
+            message = f"the <value> of {label.value} is {value.text!r}; it must be {form}"
+            report = self.error if found is None else self.warning  # Uintah passes over a wrong number of them
+            yield report(message, value.texts[0], f"write {form}")

@@ -1,0 +1,71 @@
+"""Comments in a deck that keep findings quiet.
+
+``<!-- ups: ignore UPS304 -->`` at the end of a line holds for that line, on a line of its own for the next one;
+``<!-- ups: ignore-file UPS304, UPS4 -->`` holds for the file. Codes may be prefixes. One that keeps nothing
+quiet is reported, so that they do not pile up.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from ups.diagnostics import Diagnostic, Location, Severity, register_code
+
+UNUSED = register_code("UPS014", "suppression that suppresses nothing")
+
+_COMMENT = re.compile(r"<!--\s*ups:\s*(ignore(?:-file)?)\s+([\w,\s]*?)\s*-->")
+
+
+@dataclass
+class Suppression:
+    """One comment: where it stands, the line it holds for (0: the whole file), and the codes."""
+
+    location: Location
+    line: int
+    codes: tuple[str, ...]
+    used: bool = False
+
+    def covers(self, diagnostic: Diagnostic) -> bool:
+        """Whether a finding is one that the comment keeps quiet."""
+        at = diagnostic.location
+        return (
+            at is not None
+            and at.file == self.location.file
+            and self.line in (0, at.line)
+            and diagnostic.code.startswith(self.codes)
+        )
+
+
+def suppressions(file: str, text: str) -> list[Suppression]:
+    """The comments of a file."""
+    if "ups:" not in text:
+        return []
+    found = []
+    for match in _COMMENT.finditer(text):
+        start = text.rfind("\n", 0, match.start()) + 1
+        line = text.count("\n", 0, match.start()) + 1
+        alone = not text[start : match.start()].strip()
+        codes = tuple(code for code in re.split(r"[,\s]+", match.group(2)) if code)
+        whole_file = match.group(1) == "ignore-file"
+        at = Location(file, line, match.start() - start + 1, len(match.group()))
+        found.append(Suppression(at, 0 if whole_file else line + alone, codes))
+    return [s for s in found if s.codes]
+
+
+def without_suppressed(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> list[Diagnostic]:
+    """The findings that no comment keeps quiet, and a warning for each comment that keeps none quiet."""
+    comments = [s for file, text in sources.items() for s in suppressions(file, text)]
+    kept = []
+    for diagnostic in diagnostics:
+        covering = [s for s in comments if s.covers(diagnostic)]
+        for comment in covering:
+            comment.used = True
+        if not covering:
+            kept.append(diagnostic)
+    for comment in comments:
+        if not comment.used:
+            message = f"nothing to suppress here: {', '.join(comment.codes)}"
+            kept.append(Diagnostic(UNUSED, Severity.WARNING, message, comment.location, "remove the comment"))
+    return kept
