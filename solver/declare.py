@@ -208,6 +208,10 @@ class Family:
             return self.models.get(name) if not self._homes else None
         return self._models.get(today)
 
+    def today(self, name: str) -> str:
+        """The name of today of a model that was found."""
+        return self._old_names.get(name, name)
+
     @property
     def models(self) -> dict[str, type]:
         """The record class of every model, by the name a deck uses today."""
@@ -260,7 +264,7 @@ class FieldInfo:
     default: Any
     section: SectionOf | None = None
 
-    @property
+    @cached_property
     def record(self) -> type | None:
         """The record class of a field that holds one section, or many of one kind; None for values."""
         if self.section is not None:
@@ -270,7 +274,7 @@ class FieldInfo:
             hint = get_args(hint)[0]
         return hint if is_record(hint) else None
 
-    @property
+    @cached_property
     def many(self) -> bool:
         """Whether a deck may give the field several times."""
         if self.section is not None:

@@ -286,8 +286,8 @@ class Reader(ValueReader):
         record = family.find(key)
         if record is None:
             return self._known_model(family, key, at, element)
-        if key in family.old_names:
-            self._old_name(key, family.old_names[key], at)
+        if family.today(key) != key:
+            self._old_name(key, family.today(key), at)
         return self.read(record, element, family.key, family)
 
     def _old_name(self, old: str, today: str, at: Any) -> None:
@@ -439,13 +439,16 @@ class _Children:
 
     def __init__(self, element: Element) -> None:
         self.element = element
+        self.by_tag: dict[str, list[Element]] = {}
+        for child in element.children:
+            self.by_tag.setdefault(child.tag, []).append(child)
         self.of_families: dict[str, list[Element]] = {}
         self.meant: dict[str, list[Element]] = {}
         """Children under a misspelt tag, by the tag that was probably meant."""
 
     def named(self, *tags: str) -> list[Element]:
         """The children with one of these tags, or those that are probably meant so."""
-        found = [child for child in self.element.children if child.tag in tags]
+        found = [child for tag in tags for child in self.by_tag.get(tag, ())]
         return found or [child for tag in tags for child in self.meant.get(tag, ())]
 
 

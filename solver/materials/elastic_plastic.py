@@ -253,7 +253,10 @@ def elastic_plastic_stress(
     """Stress, heating, internal energy and failure of one particle, in Uintah's order of operations."""
     J = determinant(point.deformation_gradient)
     if not (0.0 < J <= LARGEST_EXPANSION):
-        return StressUpdate(isotropic(0.0), 0.0, 0.0, 0.0, 0.0, DELETE)
+        # As in Uintah, a particle that is given up still holds back the next step by waves in what it became.
+        modulus = model.bulk_modulus + 4.0 * model.shear_modulus / 3.0
+        c = math.sqrt(modulus * max(0.0, J) / material.density)
+        return StressUpdate(isotropic(0.0), c, 0.0, 0.0, 0.0, DELETE)
     motion = kinematics(point, tensor_at(state.rotation, p), material.density / J)
     old_stress = to_material(motion.old_rotation, point.stress)
     start = plasticity_state(model, state, p, point, material, motion, trace(old_stress) / 3.0)

@@ -1,8 +1,9 @@
 """A tube under internal pressure in one dimension: finite differences on rings, independent of the solver.
 
-Lagrangian rings of equal width in plane strain carry radial, hoop and axial stress. Plasticity is J2 flow with
-the stress of Johnson and Cook, pressure that of Mie and Grueneisen, the scheme that of M. L. Wilkins, Methods in
-Computational Physics 3 (1964) 211-263. Constants are those of inputs/MPM/thickCylinderMPM.ups.
+Lagrangian rings of equal width in plane strain carry radial, hoop and axial stress. Plasticity is J2
+flow with the stress of Johnson and Cook, pressure that of Mie and Grueneisen, the scheme that of M. L.
+Wilkins, Methods in Computational Physics 3 (1964) 211-263. Constants are those of
+inputs/MPM/thickCylinderMPM.ups.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Validation: decks at full length against published or exact answers.
 
-Each folder is a case: ``expected.json`` holds the answers with tolerances and sources, ``result.json`` what the
-last recorded run gave. They run with ``pytest -m slow``; ``UPS_RECORD=1 pytest -m slow`` writes the results down.
+Each folder is a case: ``expected.json`` holds the answers with tolerances and sources, ``result.json``
+what the last recorded run gave. They run with ``pytest -m slow``; ``UPS_RECORD=1 pytest -m slow`` writes
+the results down.
 """
 
 from __future__ import annotations

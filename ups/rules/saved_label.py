@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from solver.declare import Section
 from ups.diagnostics import Diagnostic, Fix, did_you_mean
 from ups.element import Attribute, Element
 from ups.grammar.saved_labels import LABELS, PATTERNS
@@ -22,6 +23,8 @@ ALWAYS = frozenset(
     """.split()
 )
 """What every deck of the method can save."""
+
+_WITH_STATE = ("constitutive_model", "damage_model", "erosion")
 
 
 class SavedLabel(Rule):
@@ -67,10 +70,18 @@ class SavedLabel(Rule):
 
 
 def _must_be_provided(name: str, deck: DeckView) -> bool:
-    """Whether a label that nothing of this program computes cannot come from elsewhere either."""
-    if deck.component != "mpm" or deck.switch("MPM/coupled_flow_analysis"):
+    """Whether a label that nothing of the method computes cannot come from elsewhere either."""
+    if deck.switch("MPM/coupled_flow_analysis") or deck.component not in ("mpm", "mpmice"):
         return False
-    return not deck.deck.reader.unsupported or not name.startswith("p.")
+    if not name.startswith("p."):
+        return deck.component == "mpm"
+    parts = [e for m in deck.particle_materials for e in m.children if e.tag in _WITH_STATE]
+    return all(_is_run(deck.record(part)) for part in parts)
+
+
+def _is_run(model: object) -> bool:
+    """Whether a model could be read and is one that this program runs, so that its labels are known."""
+    return model is not None and not isinstance(model, Section)
 
 
 def _provided(deck: DeckView) -> set[str]:
@@ -79,10 +90,9 @@ def _provided(deck: DeckView) -> set[str]:
     from solver.particles import Particles, state_variables
 
     found = {variable.label for variable in state_variables(Particles).values()} | ALWAYS
-    for element in (e for material in deck.particle_materials for e in material.children):
-        model = deck.record(element)
-        if element.tag in ("constitutive_model", "damage_model", "erosion") and model is not None:
-            found |= {variable.label for variable in state_variables(state_record(model)).values()}
+    parts = (e for m in deck.particle_materials for e in m.children if e.tag in _WITH_STATE)
+    states = {state_record(model) for part in parts if (model := deck.record(part)) is not None}
+    found |= {variable.label for state in states for variable in state_variables(state).values()}
     if deck.text("MPM/boundary_traction_faces"):
         found |= {name for name in LABELS if name.startswith("Bndy")}
     if deck.switch("MPM/use_cohesive_zones"):

@@ -34,7 +34,8 @@ class OldForm:
 
 
 @cache
-def _old_forms() -> tuple[OldForm, ...]:
+def all_old_forms() -> tuple[OldForm, ...]:
+    """One of each old form of the package."""
     package = importlib.import_module("ups.rules.old_forms")
     for module in pkgutil.iter_modules(package.__path__):
         importlib.import_module(f"{package.__name__}.{module.name}")
@@ -43,7 +44,7 @@ def _old_forms() -> tuple[OldForm, ...]:
 
 def modernise(root: Element, diagnostics: Diagnostics) -> None:
     """Bring a deck's tree up to date in place; the notes go to the diagnostics."""
-    for form in _old_forms():
+    for form in all_old_forms():
         diagnostics.extend(form.modernise(root))
 
 

@@ -1,0 +1,178 @@
+"""What a tag, a model, a saved label or a code means: the answers of ``ups explain``."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterable, Iterator
+from typing import Any, get_args, get_origin
+
+from solver.declare import FAMILIES, FieldInfo, Parameter, fields, without_optional
+from ups.diagnostics import CODES, did_you_mean
+from ups.grammar import known_model, known_names
+from ups.grammar.index import Place, places
+
+_WORDS = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}
+_MOST_PLACES = 12
+
+
+def explain(name: str) -> str | None:
+    """Everything that is known under a name, as text; None where there is nothing.
+
+    ``name`` is a code (UPS102), a tag (``<density>`` or density), an attribute, a model, a path such as
+    ``material/density``, or a label of ``<save>``.
+    """
+    name = name.strip().strip("<>/")
+    if name.upper() in all_codes():
+        return explain_code(name.upper())
+    parts = [*_models(name), *_tags(name), *_label(name)]
+    return "\n\n".join(parts) if parts else None
+
+
+def suggestion(name: str) -> str | None:
+    """A known name that was probably meant."""
+    from ups.grammar.saved_labels import LABELS
+
+    tags = {place.tag for place in places()}
+    models = {n for family in FAMILIES.values() for n in (*family.models, *known_names(family.name))}
+    return did_you_mean(name, [*sorted(tags), *sorted(models), *LABELS, *all_codes()])
+
+
+# ---- codes -------------------------------------------------------------------------------------------------
+
+
+def all_codes() -> dict[str, str]:
+    """Every code with its title, those of rules included."""
+    from ups.rules import all_rules
+
+    all_rules()
+    _old_forms()
+    return dict(sorted(CODES.items()))
+
+
+def explain_code(code: str) -> str:
+    """The page of a code."""
+    from ups.rules import all_rules
+    from ups.rules.form_pages import PAGES
+
+    pages = [PAGES[code]] if code in PAGES else []
+    pages += [inspect.cleandoc(rule.__doc__ or "") for rule in (*all_rules(), *_old_forms()) if rule.code == code]
+    return "\n\n".join([f"{code}: {CODES[code]}", *pages])
+
+
+def _old_forms() -> tuple[Any, ...]:
+    from ups.rules.old_forms.old_form import all_old_forms
+
+    return all_old_forms()
+
+
+# ---- models ------------------------------------------------------------------------------------------------
+
+
+def _models(name: str) -> Iterator[str]:
+    for family in list(FAMILIES.values()):
+        record = family.models.get(family.old_names.get(name, name)) or known_model(family.name, name)
+        if record is not None:
+            runs = name in family.models or name in family.old_names
+            yield "\n".join(_model_lines(name, family.meaning, record, runs))
+
+
+def _model_lines(name: str, meaning: str, record: type, runs: bool) -> Iterator[str]:
+    yield f"{name}: {meaning}" + ("" if runs else " (known, not supported by ups run)")
+    yield from (f"  {line}".rstrip() for line in inspect.cleandoc(record.__doc__ or "").splitlines())
+    own = fields(record)
+    if own:
+        yield "  parameters:"
+        width = max(len(info.tag) for info in own)
+        yield from (f"    {info.tag:{width}}  {describe(info)}" for info in own)
+
+
+# ---- tags --------------------------------------------------------------------------------------------------
+
+
+def _tags(name: str) -> Iterator[str]:
+    parent, _, tag = name.rpartition("/")
+    parent = parent.rpartition("/")[2]
+    found = [p for p in places() if tag in (p.tag, *p.info.parameter.old_tags)]
+    found = [p for p in found if not parent or p.parent == parent]
+    groups: dict[str, list[Place]] = {}
+    for place in found:
+        groups.setdefault(describe(place.info), []).append(place)
+    for text, places_of in groups.items():
+        kind = "attribute" if places_of[0].info.parameter.attribute else "tag"
+        shown = f"<{tag}>" if kind == "tag" else tag
+        where = list(dict.fromkeys(_where(p) for p in places_of))
+        more = f" and {len(where) - _MOST_PLACES} more" if len(where) > _MOST_PLACES else ""
+        unsupported = "" if any(p.runs for p in places_of) else " (known, not supported by ups run)"
+        yield f"{shown}: {text}{unsupported}\n  {kind} of {', '.join(where[:_MOST_PLACES])}{more}"
+
+
+def _where(place: Place) -> str:
+    return f'<{place.parent} type="{place.model}">' if place.model else f"<{place.parent}>"
+
+
+def describe(info: FieldInfo) -> str:
+    """A declared field in one line: meaning, type, unit, bounds, default."""
+    parameter = info.parameter
+    parts = [parameter.meaning, _type_of(info)]
+    parts += [f"in {parameter.unit}"] if parameter.unit else []
+    parts += [text] if (text := bounds(parameter)) else []
+    parts += [f"one of {', '.join(c for c in parameter.choices if c)}"] if parameter.choices else []
+    parts.append("required" if info.required else _default(info))
+    parts += [f"no effect: {parameter.ignored}"] if parameter.ignored else []
+    parts += [f"once called {', '.join(parameter.old_tags)}"] if parameter.old_tags else []
+    parts += [f"source: {parameter.source}"] if parameter.source else []
+    return "; ".join(part for part in parts if part)
+
+
+def _type_of(info: FieldInfo) -> str:
+    if info.sub_model is not None:
+        names = ", ".join(sorted(FAMILIES[info.sub_model.family].models))
+        return f"one of {names}"
+    if info.record is not None:
+        return "a section" + (", any number of times" if info.many else "")
+    hint = without_optional(info.type)
+    if get_origin(hint) is tuple:
+        first, *rest = get_args(hint)
+        word = {float: "numbers", int: "whole numbers"}.get(first, "words")
+        return f"a list of {word}" if rest == [Ellipsis] else f"{1 + len(rest)} {word} [a, b, c]"
+    return _WORDS.get(hint, "")
+
+
+def bounds(parameter: Parameter) -> str:
+    """The bounds of a number in words; empty where there are none."""
+    signs: Iterable[tuple[str, float | None]] = (
+        (">", parameter.gt),
+        (">=", parameter.ge),
+        ("<", parameter.lt),
+        ("<=", parameter.le),
+    )
+    return " and ".join(f"{sign} {value:g}" for sign, value in signs if value is not None)
+
+
+def _default(info: FieldInfo) -> str:
+    value = info.default
+    if value is None or value == "" or value == () or info.record is not None or info.sub_model is not None:
+        return "optional"
+    shown = f"{value:g}" if isinstance(value, float) else str(value).lower() if isinstance(value, bool) else str(value)
+    return f"default {shown}"
+
+
+# ---- labels ------------------------------------------------------------------------------------------------
+
+
+def _label(name: str) -> Iterator[str]:
+    from ups.grammar.saved_labels import LABELS
+
+    label = LABELS.get(name)
+    if label is not None:
+        unit = f", in {label.unit}" if label.unit else ""
+        yield f'<save label="{name}"/>: {label.meaning or "a variable of another method"}{unit}'
+
+
+def explain_command(name: str) -> tuple[str, int]:
+    """What ``ups explain NAME`` prints, and its exit status."""
+    text = explain(name)
+    if text is not None:
+        return text, 0
+    nearest = suggestion(name.strip().strip("<>/"))
+    return f"nothing is known about {name!r}" + (f"; did you mean {nearest}?" if nearest else ""), 1
