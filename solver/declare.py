@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
+import inspect
 import pkgutil
 import re
 import typing
@@ -186,12 +187,14 @@ class Family:
         declaration = re.compile(rf'^@model\(\s*"{self.name}",([^)]*)', re.MULTILINE)
         homes: dict[str, str] = {}
         for module in self._modules():
-            spec = module.module_finder.find_spec(module.name, None)  # type: ignore[call-arg]  # of a path finder
+            spec = module.module_finder.find_spec(module.name, None)
             origin = spec.origin if spec is not None else None
             if origin is None or not origin.endswith(".py"):
                 continue
             for names in declaration.findall(Path(origin).read_text(encoding="utf-8")):
-                homes.update((name, f"{self.package}.{module.name}") for name in re.findall(r'"([^"]+)"', names))
+                homes.update(
+                    (name, f"{self.package}.{module.name}") for name in re.findall(r'"([^"]+)"', names)
+                )
         return homes
 
     def find(self, name: str) -> type | None:
@@ -229,7 +232,9 @@ FAMILIES: dict[str, Family] = {}
 """Every family, by name. A new family is one call of :func:`family`."""
 
 
-def family(name: str, tag: str, package: str, key: str, meaning: str, old_tags: tuple[str, ...] = ()) -> Family:
+def family(
+    name: str, tag: str, package: str, key: str, meaning: str, old_tags: tuple[str, ...] = ()
+) -> Family:
     """Declare a family of models; each module of ``package`` registers its models with :func:`model`."""
     FAMILIES[name] = Family(name, tag, package, key, meaning, old_tags)
     return FAMILIES[name]
@@ -304,7 +309,7 @@ def _defaults(record: type) -> Iterator[tuple[str, Any]]:
             else:
                 yield item.name, item.default
     elif issubclass(record, Section):
-        names = {name: None for cls in reversed(record.__mro__) for name in cls.__dict__.get("__annotations__", ())}
+        names = {name: None for cls in reversed(record.__mro__) for name in inspect.get_annotations(cls)}
         for name in names:
             yield name, getattr(record, name, REQUIRED)
     else:

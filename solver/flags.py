@@ -12,9 +12,9 @@ IMPLICIT = "read by the implicit method only"
 class Flags:
     """Options of the material point method, with Uintah's defaults."""
 
-    time_integrator: Annotated[
-        str, Parameter("how time is advanced", choices=("explicit", "implicit"))
-    ] = "explicit"
+    time_integrator: Annotated[str, Parameter("how time is advanced", choices=("explicit", "implicit"))] = (
+        "explicit"
+    )
     interpolator: Annotated[
         str,
         Parameter(
@@ -73,7 +73,10 @@ class Flags:
     ] = 3.0e105
     restart_on_large_nodal_velocity: Annotated[
         bool,
-        Parameter("repeat a step with a tenth of dt where a node crosses half a cell", tag="restartOnLargeNodalVelocity"),
+        Parameter(
+            "repeat a step with a tenth of dt where a node crosses half a cell",
+            tag="restartOnLargeNodalVelocity",
+        ),
     ] = False
     pressure_stabilization: Annotated[
         bool, Parameter("average the volume change over each cell", tag="DoPressureStabilization")
@@ -89,9 +92,9 @@ class Flags:
         bool, Parameter("heat by friction", ignored="Uintah multiplies the heat by zero")
     ] = False
 
-    explicit_heat_conduction: Annotated[
-        bool, Parameter("conduct heat", tag="DoExplicitHeatConduction")
-    ] = True
+    explicit_heat_conduction: Annotated[bool, Parameter("conduct heat", tag="DoExplicitHeatConduction")] = (
+        True
+    )
     compute_nodal_heat_flux: Annotated[
         bool, Parameter("compute g.HeatFlux", tag="computeNodalHeatFlux", ignored="a diagnostic of Uintah")
     ] = False
@@ -133,7 +136,8 @@ class Flags:
         bool, Parameter("allow new materials", tag="CanAddMPMMaterial", ignored="no longer read by Uintah")
     ] = False
     cap_density: Annotated[
-        bool, Parameter("limit the density", tag="DoCapDensity", ignored="read by a few models in MPMICE only")
+        bool,
+        Parameter("limit the density", tag="DoCapDensity", ignored="read by a few models in MPMICE only"),
     ] = False
     average_deformation: Annotated[
         bool, Parameter("average F", tag="DoDefGradAveraging", ignored="no longer read by Uintah")
@@ -152,10 +156,12 @@ class Flags:
     ] = True
     use_volume_integral: Annotated[bool, Parameter("J integrals", ignored="fracture only")] = False
     dynamic: Annotated[bool, Parameter("with inertia", ignored=IMPLICIT)] = True
-    solver: Annotated[
-        str, Parameter("linear solver", choices=("petsc", "simple"), ignored=IMPLICIT)
-    ] = "simple"
-    convergence_criteria_disp: Annotated[float, Parameter("of displacement", ge=0.0, ignored=IMPLICIT)] = 1.0e-10
+    solver: Annotated[str, Parameter("linear solver", choices=("petsc", "simple"), ignored=IMPLICIT)] = (
+        "simple"
+    )
+    convergence_criteria_disp: Annotated[float, Parameter("of displacement", ge=0.0, ignored=IMPLICIT)] = (
+        1.0e-10
+    )
     convergence_criteria_energy: Annotated[float, Parameter("of energy", ge=0.0, ignored=IMPLICIT)] = 4.0e-10
     implicit_heat_conduction: Annotated[
         bool, Parameter("conduct heat implicitly", tag="DoImplicitHeatConduction", ignored=IMPLICIT)

@@ -9,7 +9,9 @@ from __future__ import annotations
 import hashlib
 import operator
 import os
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -27,6 +29,18 @@ def _cache_directory() -> Path:
 os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_directory()))
 os.environ.setdefault("NUMBA_SLP_VECTORIZE", "1")  # transfers run 1.5 times as fast: rows of four at once
 
+
+@contextmanager
+def _without(package: str) -> Iterator[None]:
+    """Make a package look absent to what is imported inside."""
+    absent = package not in sys.modules
+    if absent:
+        sys.modules[package] = None  # type: ignore[assignment]  # Python's way to say: not to be found
+    yield
+    if absent:
+        del sys.modules[package]
+
+
 import numba  # noqa: E402 - the cache folder has to be known before numba is imported
 from numba.core import cgutils, types  # noqa: E402
 from numba.extending import (  # noqa: E402
@@ -38,6 +52,9 @@ from numba.extending import (  # noqa: E402
     register_model,
     type_callable,
 )
+
+with _without("scipy.linalg"):  # half a second of start-up to find a BLAS that no kernel here uses
+    import numba.np.arraymath
 
 from solver import dispatch, tensor  # noqa: E402
 from solver.tensor import Tensor  # noqa: E402
@@ -53,7 +70,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def kernel(function: Function) -> Function:
     """Compile a function with numba for whatever models it is called with, cached on disk across runs."""
-    return numba.njit(cache=True, **OPTIONS)(function)
+    return numba.njit(cache=True, no_cfunc_wrapper=True, **OPTIONS)(function)
 
 
 class TensorType(types.Type):
@@ -101,23 +118,23 @@ def _is_tensor(*given: Any) -> bool:
 
 @overload(operator.add, jit_options=INLINED, strict=False)
 def _add(a: Any, b: Any) -> Any:
-    return (lambda a, b: tensor.add(a, b)) if _is_tensor(a, b) else None
+    return tensor.add if _is_tensor(a, b) else None
 
 
 @overload(operator.sub, jit_options=INLINED, strict=False)
 def _subtract(a: Any, b: Any) -> Any:
-    return (lambda a, b: tensor.subtract(a, b)) if _is_tensor(a, b) else None
+    return tensor.subtract if _is_tensor(a, b) else None
 
 
 @overload(operator.matmul, jit_options=INLINED, strict=False)
 def _matmul(a: Any, b: Any) -> Any:
-    return (lambda a, b: tensor.matmul(a, b)) if _is_tensor(a, b) else None
+    return tensor.matmul if _is_tensor(a, b) else None
 
 
 @overload(operator.mul, jit_options=INLINED, strict=False)
 def _multiply(a: Any, b: Any) -> Any:
     if _is_tensor(a) and isinstance(b, types.Number):
-        return lambda a, b: tensor.scale(a, b)
+        return tensor.scale
     if isinstance(a, types.Number) and _is_tensor(b):
         return lambda a, b: tensor.scale(b, a)
     return None
@@ -137,7 +154,7 @@ def _negate(a: Any) -> Any:
 
 @overload_attribute(TensorType, "T", jit_options=INLINED, strict=False)
 def _transpose(a: Any) -> Any:
-    return lambda a: tensor.transpose(a)
+    return tensor.transpose
 
 
 def _hand_to_numba(kind: str, function: Callable[..., Any]) -> None:

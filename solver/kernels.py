@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.boundary_conditions import GRADIENT, MIRROR, SET, ZERO_NORMAL, Operations
+from solver.dispatch import inline
 from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
 from solver.jit import kernel
@@ -130,7 +131,7 @@ def particles_to_grid(
             row[12] += bz * S
 
 
-@kernel
+@inline
 def negative_pull(particles: Particles, p: int, transfer: Transfer) -> Tensor:
     """-V (sigma - q I) of a particle, whose product with G is its internal force on a node.
 
@@ -442,7 +443,7 @@ class Kinematics(NamedTuple):
     stabilize_pressure: bool
 
 
-@kernel
+@inline
 def new_deformation_gradient(F: Tensor, L: Tensor, dt: float, subcycles: int) -> Tensor:
     """F at the end of the step from the velocity gradient L."""
     if subcycles > 0:
@@ -543,9 +544,7 @@ def update_stresses(
         particles.localized[p] = new.localized
         temperature = particles.temperature[p]
         particles.previous_temperature[p] = temperature
-        particles.temperature[p] = (
-            temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
-        )
+        particles.temperature[p] = temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
         energy += new.strain_energy
         total_volume += volume
         c = new.sound_speed

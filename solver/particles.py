@@ -64,7 +64,7 @@ class Particles(NamedTuple):
     old_velocity: Annotated[Array, StateVariable("", "Vector", restart=False)]
     """Velocity at the start of the step, for the stable time step."""
 
-    def __len__(self) -> int:  # type: ignore[override]  # the number of particles, not of fields
+    def __len__(self) -> int:
         return int(self.position.shape[0])
 
 

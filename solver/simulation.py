@@ -21,8 +21,8 @@ from solver.contact.law import ContactLaw, ContactScene
 from solver.flags import Flags
 from solver.grid import FACES, Grid
 from solver.kernels import CHANNELS, EXTERNAL_FORCE, GATHERED, Kinematics, Transfer
-from solver.materials.failure import Failure, new_failure
 from solver.materials.constitutive import Material, Step, initial_sound_speed, time_step_limit
+from solver.materials.failure import Failure, new_failure
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.particles import Particles, keep
 
@@ -132,9 +132,7 @@ class Simulation:
         self._owned_nodes = _owned_nodes(self.grid)
         self._owned_cells = _owned_cells(self.grid)
         self._weight = self.boundary_conditions.node_to_cell_weight()
-        self._kinematics = Kinematics(
-            self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
-        )
+        self._kinematics = Kinematics(self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization)
         self._cell_stretch = np.zeros(len(self._owned_cells))
         self.face_forces: dict[str, tuple[float, float, float]] = {}
 
@@ -151,7 +149,9 @@ class Simulation:
     def _initial_limit(self, body: Body) -> float:
         particles = body.particles
         speed = initial_sound_speed(body.model, particles.mass / particles.volume, particles.temperature)
-        waves = kernels.initial_wave_speed(particles.velocity, np.broadcast_to(speed, particles.mass.shape).copy())
+        waves = kernels.initial_wave_speed(
+            particles.velocity, np.broadcast_to(speed, particles.mass.shape).copy()
+        )
         return self._limit(body, waves)
 
     def _limit(self, body: Body, wave_speed: tuple[float, float, float]) -> float:
@@ -214,7 +214,9 @@ class Simulation:
             axisymmetric=self.flags.axisymmetric,
             rigid=body.rigid,
             spread_loads=self.spread_corner_loads is None,
-            conductivity=body.material.thermal_conductivity / body.material.specific_heat if conducts else 0.0,
+            conductivity=body.material.thermal_conductivity / body.material.specific_heat
+            if conducts
+            else 0.0,
             specific_heat=body.material.specific_heat,
         )
 

@@ -17,7 +17,10 @@ class TimeControl:
     timestep_multiplier: Annotated[float, Parameter("factor on the stable time step", gt=0.0)]
     initTime: Annotated[float, Parameter("time at the start", unit="s")] = 0.0
     max_Timesteps: Annotated[
-        int, Parameter("number of steps after which the run ends, 0 for no limit", ge=0, old_tags=("max_iterations",))
+        int,
+        Parameter(
+            "number of steps after which the run ends, 0 for no limit", ge=0, old_tags=("max_iterations",)
+        ),
     ] = 0
     delt_init: Annotated[float, Parameter("largest first time step", unit="s", gt=0.0)] = math.inf
     initial_delt_range: Annotated[

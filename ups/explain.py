@@ -55,7 +55,9 @@ def explain_code(code: str) -> str:
     from ups.rules.form_pages import PAGES
 
     pages = [PAGES[code]] if code in PAGES else []
-    pages += [inspect.cleandoc(rule.__doc__ or "") for rule in (*all_rules(), *_old_forms()) if rule.code == code]
+    pages += [
+        inspect.cleandoc(rule.__doc__ or "") for rule in (*all_rules(), *_old_forms()) if rule.code == code
+    ]
     return "\n\n".join([f"{code}: {CODES[code]}", *pages])
 
 
@@ -153,7 +155,13 @@ def _default(info: FieldInfo) -> str:
     value = info.default
     if value is None or value == "" or value == () or info.record is not None or info.sub_model is not None:
         return "optional"
-    shown = f"{value:g}" if isinstance(value, float) else str(value).lower() if isinstance(value, bool) else str(value)
+    shown = (
+        f"{value:g}"
+        if isinstance(value, float)
+        else str(value).lower()
+        if isinstance(value, bool)
+        else str(value)
+    )
     return f"default {shown}"
 
 

@@ -147,7 +147,7 @@ def fix_files(
     ignore: Iterable[str] = (),
     jobs: int = 1,
 ) -> tuple[LintResult, int]:
-    """Do the fixes in the files, again and again until none is left; return what remains, and how many were done.
+    """Do the fixes in the files until none is left; return what remains, and how many were done.
 
     Raises
     ------
@@ -196,7 +196,7 @@ class LintOptions:
 def lint_command(
     paths: Iterable[str | os.PathLike[str]], options: LintOptions, text: str | None = None
 ) -> tuple[str, int]:
-    """What ``ups lint`` prints, and its exit status; ``text`` is the deck where it comes from standard input."""
+    """What ``ups lint`` prints, and its exit status; ``text`` is a deck from standard input."""
     chosen = {"select": options.select, "ignore": options.ignore}
     if text is not None:
         name = next(iter(paths), "<stdin>")

@@ -28,7 +28,7 @@ class Opaque:
 
 @cache
 def declared(record: type) -> tuple[tuple[FieldInfo, bool], ...]:
-    """The fields of a record, and those of its extension; with each whether it belongs to the record itself."""
+    """The fields of a record and of its extension, each with whether it is the record's own."""
     extra = extension(record)
     own = [(info, True) for info in fields(record)]
     names = {(info.tag, info.parameter.attribute) for info, _ in own}
@@ -84,14 +84,15 @@ class Reader(ValueReader):
         ``family`` is the family that it was chosen from.
         """
         errors = self.errors
+        declaration: Any = record
         children = _Children(element)
-        self._check_children(record, element, children, chosen_by, family)
+        self._check_children(declaration, element, children, chosen_by, family)
         values: dict[str, Any] = {}
-        for info, own in declared(record):
+        for info, own in declared(declaration):
             value = self._field(info, element, children)
             if own and value is not FAILED:
                 values[info.name] = value
-        for group in groups(record):
+        for group in groups(declaration):
             self._check_group(group, record, element)
         self._check_attributes(record, element, chosen_by)
         if element.texts and chosen_by != "text":
@@ -99,9 +100,10 @@ class Reader(ValueReader):
             self.error("UPS201", message, element.texts[0], "remove the text")
         if self.errors > errors:
             return None
-        return self._make(record, values, element)
+        made: Record | None = self._make(record, values, element)
+        return made
 
-    def _make(self, record: type[Record], values: dict[str, Any], element: Element) -> Record | None:
+    def _make(self, record: Any, values: dict[str, Any], element: Element) -> Any:
         """Construct a record, let it read its files, and report what it finds wrong with itself."""
         if any(i.required and i.name not in values for i in fields(record)):
             return None
@@ -123,7 +125,7 @@ class Reader(ValueReader):
             return None
         self._places[id(made)] = (made, element)
         self._records[id(element)] = made
-        return made  # type: ignore[no-any-return]  # a Record by construction
+        return made
 
     # ---- fields --------------------------------------------------------------------------------------------
 
@@ -232,7 +234,9 @@ class Reader(ValueReader):
     def _check_group(self, group: TagGroup, record: type, element: Element) -> None:
         """Check tags (or attributes) that belong together, or of which one must be given."""
         attributes = {i.tag for i, _ in declared(record) if i.parameter.attribute}
-        given = [n for n in group.names if n in element.attributes or (n not in attributes and element.get(n))]
+        given = [
+            n for n in group.names if n in element.attributes or (n not in attributes and element.get(n))
+        ]
         names = ", ".join(n if n in attributes else f"<{n}>" for n in group.names)
         if group.together:
             absent = [n for n in group.names if n not in given]
@@ -305,7 +309,7 @@ class Reader(ValueReader):
         return self.read(record, element, family.key, family)
 
     def _model_name(self, family: Family, element: Element) -> tuple[str, Any]:
-        """The name by which an element chooses a model, and where that name stands (None if it is missing)."""
+        """The name by which an element chooses a model, and where it stands (None if it is missing)."""
         if family.key == "tag":
             return element.tag, element
         if family.key == "text":
@@ -358,7 +362,9 @@ class Reader(ValueReader):
             fix = None
             if label is not None and element.children:
                 fix = Fix((label.replaced(f"{label.value}, line {label.location.line}"),), safe=False)
-            self.error("UPS410" if not element.children else "UPS407", str(problem), label or element, None, fix)
+            self.error(
+                "UPS410" if not element.children else "UPS407", str(problem), label or element, None, fix
+            )
             return None
 
     # ---- what nobody declared ------------------------------------------------------------------------------
@@ -388,9 +394,14 @@ class Reader(ValueReader):
                 self._unknown_child(child, known, by_tag, children)
 
     def _of_another_model(self, child: Element, family: Family) -> bool:
-        """Whether a child that its model does not read belongs to another model of the family; it is reported."""
-        models = [*family.models.items(), *((n, known_model(family.name, n)) for n in known_names(family.name))]
-        owners = [n for n, cls in models if cls is not None and any(i.tag == child.tag for i, _ in declared(cls))]
+        """Whether a child belongs to another model of the family than the chosen one; it is reported."""
+        models = [
+            *family.models.items(),
+            *((n, known_model(family.name, n)) for n in known_names(family.name)),
+        ]
+        owners = [
+            n for n, cls in models if cls is not None and any(i.tag == child.tag for i, _ in declared(cls))
+        ]
         if owners:
             parent = child.parent.tag if child.parent else ""
             message = f"<{child.tag}> is not read by this <{parent}>: it belongs to {', '.join(owners[:4])}"
@@ -419,7 +430,9 @@ class Reader(ValueReader):
             children.meant.setdefault(nearest, []).append(child)
 
     def _check_attributes(self, record: type, element: Element, chosen_by: str) -> None:
-        known = {n for i, _ in declared(record) if i.parameter.attribute for n in (i.tag, *i.parameter.old_tags)}
+        known = {
+            n for i, _ in declared(record) if i.parameter.attribute for n in (i.tag, *i.parameter.old_tags)
+        }
         if chosen_by.startswith("@"):
             known.add(chosen_by[1:])
         for name, attribute in element.attributes.items():
@@ -428,7 +441,11 @@ class Reader(ValueReader):
 
     def _unknown_attribute(self, element: Element, attribute: Attribute, known: Iterable[str]) -> None:
         nearest = did_you_mean(attribute.name, sorted(known))
-        fix = Fix((attribute.renamed(nearest),), safe=False) if nearest else Fix((attribute.removed(),), safe=False)
+        fix = (
+            Fix((attribute.renamed(nearest),), safe=False)
+            if nearest
+            else Fix((attribute.removed(),), safe=False)
+        )
         message = f"<{element.tag}> takes no attribute {attribute.name!r}"
         suggestion = f"did you mean {nearest}?" if nearest else "remove it"
         self.error("UPS112", message, attribute.name_location, suggestion, fix)

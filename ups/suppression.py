@@ -1,8 +1,8 @@
 """Comments in a deck that keep findings quiet.
 
-``<!-- ups: ignore UPS304 -->`` at the end of a line holds for that line, on a line of its own for the next one;
-``<!-- ups: ignore-file UPS304, UPS4 -->`` holds for the file. Codes may be prefixes. One that keeps nothing
-quiet is reported, so that they do not pile up.
+``<!-- ups: ignore UPS304 -->`` at the end of a line holds for that line, on a line of its own for the
+next one; ``<!-- ups: ignore-file UPS304, UPS4 -->`` holds for the file. Codes may be prefixes. One that
+keeps nothing quiet is reported, so that they do not pile up.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Texts of a deck as values: numbers, words and vectors, with what is wrong with them and how to repair it."""
+"""Texts of a deck as values: numbers, words and vectors, with what is wrong and how to repair it."""
 
 from __future__ import annotations
 

@@ -12,6 +12,7 @@ import pyvista as pv
 
 
 def main() -> None:
+    """Read the command line and draw."""
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     arguments.add_argument("series", help="what `ups convert` wrote: name.pvd")
     arguments.add_argument("variable", help="what to color by, as ParaView lists it")

@@ -140,7 +140,7 @@ class Radial(NamedTuple):
 
 @inline
 def straddled(xi: float, r: float, lp: float) -> float:
-    """Weight of a node inside the particle: xi is the particle's offset, r the node's radius, in half cells and cells."""
+    """Weight of a node inside the particle: xi is the offset in half cells, r the node's radius in cells."""
     return ((4.0 - lp) * lp - xi * xi) / (4.0 * lp) + xi * (xi * xi - 3.0 * lp * lp) / (
         12.0 * lp * (2.0 * r + xi)
     )

@@ -13,11 +13,12 @@ MOST_NODES = 64
 
 
 @generic
-def particle_domain(interpolator: Any, deformation_gradient: Tensor, size: Tensor) -> Tensor:  # type: ignore[empty-body]
+def particle_domain(interpolator: Any, deformation_gradient: Tensor, size: Tensor) -> Tensor:
     """The particle's vectors r1, r2, r3 (columns, cell units) that the shape functions of this step use.
 
     ``size`` holds the initial vectors; interpolators whose particle domains deform return F times that.
     """
+    raise NotImplementedError
 
 
 @generic
@@ -31,10 +32,11 @@ def shape_functions(
     nodes: Any,
     weights: Any,
     gradients: Any,
-) -> int:  # type: ignore[empty-body]
+) -> int:
     """Weights of a particle at (x, y, z) on the nodes around it.
 
     Fills ``nodes`` (storage indices), ``weights`` S and ``gradients`` (.., 3), the derivatives of S by x, y, z
     in 1/length, and returns how many entries count. Axisymmetric interpolators put S/r, which the hoop
     components need, into the third column.
     """
+    raise NotImplementedError

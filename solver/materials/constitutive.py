@@ -84,8 +84,9 @@ DELETE = -999
 @generic
 def stress_update(
     model: Any, state: Any, p: int, point: Point, material: Material, step: Step
-) -> StressUpdate:  # type: ignore[empty-body]  # bodies come from the models
+) -> StressUpdate:
     """Stress of particle ``p`` at the end of the step; the model's own ``state`` arrays are updated in place."""
+    raise NotImplementedError
 
 
 @singledispatch

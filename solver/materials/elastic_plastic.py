@@ -47,6 +47,7 @@ from solver.materials.yield_condition.rousselier import Rousselier
 from solver.materials.yield_condition.von_mises import VonMises
 from solver.particles import Array, Particles, StateVariable
 from solver.tensor import (
+    Tensor,
     determinant,
     deviator,
     double_dot,
@@ -56,7 +57,6 @@ from solver.tensor import (
     put_tensor,
     rotation,
     symmetric,
-    Tensor,
     tensor_at,
     to_laboratory,
     to_material,
@@ -203,7 +203,7 @@ def __getattr__(name: str) -> type:
 
 @implements(plastic_strain_rate, ElasticPlastic)
 def _(model: ElasticPlastic, state: Any, p: int) -> float:
-    return state.plastic_strain_rate[p]  # type: ignore[no-any-return]  # an array of numbers
+    return state.plastic_strain_rate[p]
 
 
 @initial_sound_speed.register

@@ -17,6 +17,7 @@ from solver.interpolation.gimp import Gimp, GimpAxisymmetric
 from solver.jit import kernel
 from solver.kernels import Kinematics
 from solver.materials.constitutive import DELETE, NoState, Step
+from solver.materials.failure import new_failure
 from solver.materials.rigid import Rigid
 from solver.nodal import EMPTY_MASS
 from solver.particles import keep
@@ -408,7 +409,15 @@ def stress(particles, subcycles=1, stabilized=False, cells=None, cell_stretch=No
     cell_stretch = np.zeros(0) if cell_stretch is None else cell_stretch
     kinematics = Kinematics(subcycles, stabilized)
     return kernels.update_stresses(
-        MODEL, NoState(), particles, MATERIAL, step_of(dt), kinematics, cells, cell_stretch
+        MODEL,
+        NoState(),
+        new_failure(None, None, 0),
+        particles,
+        MATERIAL,
+        step_of(dt),
+        kinematics,
+        cells,
+        cell_stretch,
     )
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from xml.sax.saxutils import escape, quoteattr
 
 from lxml import etree
 
@@ -31,6 +30,17 @@ def triple(values: FloatVector | IntVector) -> str:
     return "[" + ", ".join(number(value) for value in values) + "]"
 
 
+def escape(text: str) -> str:
+    """Write the characters that XML reserves as references (the standard library's own function loads urllib)."""
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def quoted(text: str) -> str:
+    """The text as an attribute's value, in double quotes."""
+    inside = escape(text).replace('"', "&quot;").replace("\n", "&#10;").replace("\t", "&#9;")
+    return f'"{inside}"'
+
+
 def leaf(indent: int, tag: str, text: object) -> str:
     """Return the line ``<tag>text</tag>``, indented by `indent` levels.
 
@@ -49,7 +59,7 @@ def leaf(indent: int, tag: str, text: object) -> str:
 
 def attributes(**values: object) -> str:
     """Attributes in the given order, each preceded by a blank."""
-    return "".join(f" {name}={quoteattr(str(value), {'>': '&gt;'})}" for name, value in values.items())
+    return "".join(f" {name}={quoted(str(value))}" for name, value in values.items())
 
 
 def parse(path: Path) -> etree._Element:

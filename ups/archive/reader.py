@@ -24,10 +24,13 @@ from lxml import etree
 from ups.archive.errors import ArchiveError
 from ups.archive.index import ArchiveIndex, Timestep, read_index
 from ups.archive.layout import Box, Grid, IntVector, Level
+from ups.archive.measures import Named, find
 from ups.archive.reductions import Reduction, read_history
 from ups.archive.stored import StoredTimestep, blocks_of
 from ups.archive.table import Entry
+from ups.archive.units import plain_name
 from ups.archive.variables import GLOBAL_MATERIAL, PER_PATCH, Variable
+from ups.diagnostics import did_you_mean
 
 _STEPS_KEPT = 4
 """Time steps whose tables are kept in memory."""
@@ -122,6 +125,25 @@ class Archive:
                 found[listed.name] = listed.type_name
         return found
 
+    def find(self, name: str) -> Named:
+        """Find what a name stands for: ``p.stress``, ``stress``, ``stress:vonMises``, ``speed``.
+
+        Raises
+        ------
+        ArchiveError
+            Where there is no such variable, or it has no such measure.
+        """
+        try:
+            return find(name, self.variables)
+        except LookupError as error:
+            label = name.partition(":")[0]
+            names = {alias for known in self.variables for alias in (known, plain_name(known))}
+            nearest = did_you_mean(label, sorted(names))
+            there = f"there are: {', '.join(self.variables) or 'none'}"
+            advice = f"did you mean {nearest}? {there}" if nearest else there
+            message = error.args[0]
+            raise ArchiveError(self.path, message, advice="" if "; " in message else advice) from None
+
     @cached_property
     def reductions(self) -> Mapping[str, Reduction]:
         """Histories by name, a material's with its index behind (``rho_1``); each read when taken."""
@@ -169,7 +191,8 @@ class Archive:
         )
 
     def materials(self, step: int, label: str | None = None, level: int | None = None) -> list[int]:
-        """Materials of one variable, or of all, on one level, or on all."""
+        """Materials of one variable (or of a measure of one), or of all, on one level, or on all."""
+        label = None if label is None else label.partition(":")[0]
         stored = self._step(step)
         tables = [stored.table(lattice.index) for lattice in stored.levels if level in (None, lattice.index)]
         return sorted(
@@ -201,12 +224,15 @@ class Archive:
         step
             Number of the time step.
         label
-            Label of the variable.
+            Label of the variable, perhaps with a measure: ``p.stress:vonMises``.
         material
             Material, or None for all that the variable is stored for.
         patch
             Number of the patch, or None for all.
         """
+        if ":" in label:
+            named = self.find(label)
+            return _measured(self.particles(step, named.source.name, material, patch), named)
         stored = self._step(step)
         variable = self._declared(stored, label)
         there = self.materials(step, label)
@@ -224,8 +250,14 @@ class Archive:
     def grid_variable(self, step: int, label: str, material: int, level: int = 0) -> GridField:
         """Return a node, cell or face variable of a material, put together over the patches of a level.
 
-        The array may be a read-only view of the file where there is only one patch.
+        The array may be a read-only view of the file where there is only one patch. The label may name a
+        measure: ``g.stressFS:vonMises``.
         """
+        if ":" in label:
+            named = self.find(label)
+            stored_field = self.grid_variable(step, named.source.name, material, level)
+            values = _measured(stored_field.values, named)
+            return replace(stored_field, values=values, variable=named.declaration)
         stored = self._step(step)
         lattice, entries = self._on_level(stored, label, material, level)
         variable = stored.variable(next(iter(entries.values())))
@@ -325,6 +357,11 @@ class Archive:
             f"there is no variable {label} at step {step}",
             advice=f"there are: {', '.join(labels)}",
         )
+
+
+def _measured(values: np.ndarray, named: Named) -> np.ndarray:
+    """Values of what a name stands for, from those of its variable."""
+    return values if named.measure is None else named.measure.function(values)
 
 
 def _joined(parts: list[np.ndarray], variable: Variable) -> np.ndarray:

@@ -32,12 +32,12 @@ EXTENSIONS: dict[str, str] = {
 }
 """Record, as ``module:Class`` -> the section that holds the tags which this program does not run."""
 
-_PACKAGES = ("constitutive_model", "damage", "geometry", "load")
+_PACKAGES = ("constitutive_model", "geometry", "load")
 _KNOWN: dict[str, dict[str, type]] = {}
 
 
 def known(family: str, *names: str) -> Callable[[Class], Class]:
-    """Class decorator: a section describes the model(s) ``names`` of a family that this program does not run."""
+    """Class decorator: a section describes model(s) of a family that this program does not run."""
 
     def register(cls: Class) -> Class:
         for name in names:
@@ -48,7 +48,7 @@ def known(family: str, *names: str) -> Callable[[Class], Class]:
 
 
 def numbers(table: str) -> Callable[[Class], Class]:
-    """Class decorator: add optional numbers to a section, each line of the table being ``NAME NAME ...: meaning``."""
+    """Class decorator: add optional numbers to a section; each line is ``NAME NAME ...: meaning``."""
 
     def add(cls: Class) -> Class:
         for line in table.strip().splitlines():

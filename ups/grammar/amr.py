@@ -31,7 +31,9 @@ class AmrIce(Section):
     orderOfInterpolation: Annotated[int, Parameter("order of interpolation between levels", ge=0)]
     orderOf_CFI_Interpolation: Annotated[int, Parameter("the same at the edge of a level", ge=0)] = 0
     do_Refluxing: Annotated[bool, Parameter("make fluxes at the edge of levels conservative")]
-    Refinement_Criteria_Thresholds: Annotated[RefinementCriteria | None, Parameter("what asks for refinement")] = None
+    Refinement_Criteria_Thresholds: Annotated[
+        RefinementCriteria | None, Parameter("what asks for refinement")
+    ] = None
     ClampSpecificVolume: Annotated[bool, Parameter("keep specific volumes positive")] = False
 
 
@@ -53,7 +55,9 @@ class AmrMpm(Section):
         str, Parameter("shape functions at the edge of levels", choices=("linear", "gimp"))
     ] = "linear"
     Refine_Regions: Annotated[RefineRegions | None, Parameter("bodies in which the grid is fine")] = None
-    Refinement_Criteria_Thresholds: Annotated[RefinementCriteria | None, Parameter("what asks for refinement")] = None
+    Refinement_Criteria_Thresholds: Annotated[
+        RefinementCriteria | None, Parameter("what asks for refinement")
+    ] = None
 
 
 class RegridderBase(Section):
@@ -62,10 +66,18 @@ class RegridderBase(Section):
     adaptive: Annotated[bool, Parameter("change the levels during the run")] = True
     max_levels: Annotated[int, Parameter("greatest number of levels", ge=0)]
     regrid_once: Annotated[bool, Parameter("refine at the start alone")] = False
-    amr_overhead_high: Annotated[float, Parameter("share of time above which it refines less", ge=0.0, le=1.0)] = 0.15
-    amr_overhead_low: Annotated[float, Parameter("share of time below which it refines more", ge=0.0, le=1.0)] = 0.05
-    cell_stability_dilation: Annotated[IntVector | None, Parameter("cells of margin for stability", ge=0)] = None
-    cell_regrid_dilation: Annotated[IntVector | None, Parameter("cells of margin between regriddings", ge=0)] = None
+    amr_overhead_high: Annotated[
+        float, Parameter("share of time above which it refines less", ge=0.0, le=1.0)
+    ] = 0.15
+    amr_overhead_low: Annotated[
+        float, Parameter("share of time below which it refines more", ge=0.0, le=1.0)
+    ] = 0.05
+    cell_stability_dilation: Annotated[IntVector | None, Parameter("cells of margin for stability", ge=0)] = (
+        None
+    )
+    cell_regrid_dilation: Annotated[
+        IntVector | None, Parameter("cells of margin between regriddings", ge=0)
+    ] = None
     dynamic_dilation: Annotated[bool, Parameter("fit the margin to the run")] = False
     max_dilation: Annotated[bool, Parameter("use the greatest margin")] = False
     max_timestep_interval: Annotated[int, Parameter("most steps between regriddings")] = 50

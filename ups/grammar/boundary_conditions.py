@@ -1,4 +1,4 @@
-"""Boundary conditions of gas dynamics: tags of ``<BoundaryConditions>`` that the material point method ignores."""
+"""Boundary conditions of gas dynamics, which the material point method ignores."""
 
 from __future__ import annotations
 
@@ -48,7 +48,9 @@ class MicroSlip(Section):
 
     alpha_momentum: Annotated[float, Parameter("accommodation of momentum", ge=0.0)]
     alpha_temperature: Annotated[float, Parameter("accommodation of heat", ge=0.0)]
-    SlipModel: Annotated[Any, SectionOf("ups.grammar.boundary_conditions:SlipModel"), Parameter("the law of slip")]
+    SlipModel: Annotated[
+        Any, SectionOf("ups.grammar.boundary_conditions:SlipModel"), Parameter("the law of slip")
+    ]
     CreepFlow: Annotated[bool, Parameter("let a gradient of temperature drive the slip")]
 
 

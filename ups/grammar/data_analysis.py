@@ -7,7 +7,11 @@ from typing import Annotated, Any
 from solver.declare import IntVector, Parameter, Section, SectionOf, SubModel, Vector, family, model
 
 MODULE = family(
-    "analysis_module", "Module", "ups.grammar.data_analysis", "@name", "quantity that is computed during the run"
+    "analysis_module",
+    "Module",
+    "ups.grammar.data_analysis",
+    "@name",
+    "quantity that is computed during the run",
 )
 
 _PLANES = ("XY", "XZ", "YZ")
@@ -174,7 +178,9 @@ class BalanceModule(TimedModule):
 class HeatFluxModule(AnyModule):
     """Heat that flows through a plate."""
 
-    plane: Annotated[Any, SectionOf("ups.grammar.data_analysis:Plane", many=True), Parameter("the plate")] = ()
+    plane: Annotated[
+        Any, SectionOf("ups.grammar.data_analysis:Plane", many=True), Parameter("the plate")
+    ] = ()
 
 
 @model("analysis_module", "radiometer")

@@ -37,7 +37,9 @@ class SlipExchange(Section):
 class ExchangeProperties(Section):
     """What the materials exchange."""
 
-    exchange_coefficients: Annotated[ExchangeCoefficients, Parameter("coefficients for the pairs of materials")]
+    exchange_coefficients: Annotated[
+        ExchangeCoefficients, Parameter("coefficients for the pairs of materials")
+    ]
     CoefficientModel: Annotated[CoefficientModel | None, Parameter("law of the coefficients")] = None
     Model: Annotated[SlipExchange | None, Parameter("exchange with slip")] = None
     do_convective_heat_transfer: Annotated[bool, Parameter("heat a solid by convection")] = False

@@ -11,7 +11,11 @@ from ups.reader import Opaque
 TURBULENCE = family("turbulence", "turbulence", "ups.grammar.ice", "@model", "stress of unresolved eddies")
 WALL_STRESS = family("wall_shear_stress", "wallShearStress", "ups.grammar.ice", "@model", "stress at a wall")
 MANUFACTURED = family(
-    "manufactured_solution", "manufacturedSolution", "ups.grammar.ice", "@type", "problem with a known solution"
+    "manufactured_solution",
+    "manufacturedSolution",
+    "ups.grammar.ice",
+    "@type",
+    "problem with a known solution",
 )
 
 _AXES = ("x", "X", "y", "Y", "z", "Z")
@@ -23,7 +27,9 @@ class Advection(Section):
 
     type: Annotated[
         str,
-        Parameter("order of the scheme", choices=("FirstOrder", "FirstOrderGPU", "SecondOrder"), attribute=True),
+        Parameter(
+            "order of the scheme", choices=("FirstOrder", "FirstOrderGPU", "SecondOrder"), attribute=True
+        ),
     ]
     useCompatibleFluxes: Annotated[bool, Parameter("limit all fluxes alike", attribute=True)] = True
     compatibleFluxes: Annotated[bool, Parameter("limit all fluxes alike", attribute=True)] = True
@@ -203,9 +209,13 @@ class IceOptions(Section):
     wallShearStress: Annotated[Any, SubModel("wall_shear_stress")] = None
     customInitialization: Annotated[CustomInitialization | None, Parameter("flows at the start")] = None
     ImplicitSolver: Annotated[ImplicitSolver | None, Parameter("solve for the pressure implicitly")] = None
-    max_iteration_equilibration: Annotated[int, Parameter("iterations of the equilibration of pressure", ge=0)] = 100
+    max_iteration_equilibration: Annotated[
+        int, Parameter("iterations of the equilibration of pressure", ge=0)
+    ] = 100
     TimeStepControl: Annotated[TimeStepControl | None, Parameter("what limits the time step")] = None
-    fixedPressureGradient: Annotated[FixedPressureGradient | None, Parameter("a gradient that drives the flow")] = None
+    fixedPressureGradient: Annotated[
+        FixedPressureGradient | None, Parameter("a gradient that drives the flow")
+    ] = None
 
 
 class Cfd(Section):

@@ -6,7 +6,11 @@ from solver.declare import IntVector, Parameter, Section, SubModel, Vector, fami
 from ups.grammar.geometry_object import GeometryObjectExtension
 
 EQUATION_OF_STATE = family(
-    "ice_equation_of_state", "EOS", "ups.grammar.ice_equation_of_state", "@type", "pressure of a gas or liquid"
+    "ice_equation_of_state",
+    "EOS",
+    "ups.grammar.ice_equation_of_state",
+    "@type",
+    "pressure of a gas or liquid",
 )
 SPECIFIC_HEAT = family(
     "ice_specific_heat",
@@ -16,7 +20,11 @@ SPECIFIC_HEAT = family(
     "specific heat of a gas against temperature",
 )
 VISCOSITY = family(
-    "ice_viscosity", "Model", "ups.grammar.ice_viscosity", "@name", "viscosity of a gas against temperature or place"
+    "ice_viscosity",
+    "Model",
+    "ups.grammar.ice_viscosity",
+    "@name",
+    "viscosity of a gas against temperature or place",
 )
 
 
@@ -66,7 +74,9 @@ class IceMaterial(Section):
     geom_object: Annotated[tuple[GasRegion, ...], Parameter("where the material is at the start")] = ()
     dynamicViscosityModels: Annotated[ViscosityModels | None, Parameter("laws of the viscosity")] = None
     SpecificHeatModel: Annotated[Any, SubModel("ice_specific_heat")] = None
-    tiny_rho: Annotated[float, Parameter("density where the material is absent", unit="kg/m^3", ge=0.0)] = 1.0e-12
+    tiny_rho: Annotated[float, Parameter("density where the material is absent", unit="kg/m^3", ge=0.0)] = (
+        1.0e-12
+    )
     includeFlowWork: Annotated[bool, Parameter("count the work of expansion")] = True
     isSurroundingMatl: Annotated[bool, Parameter("fill what other materials leave free")] = False
 

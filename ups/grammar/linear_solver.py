@@ -20,7 +20,9 @@ class SolverParameters(Section):
 
     variable: Annotated[str, Parameter("the unknown that the options are for", attribute=True)] = ""
     solver: Annotated[str, Parameter("the method", choices=_both_cases(_SOLVERS))] = "CG"
-    preconditioner: Annotated[str, Parameter("the preconditioner", choices=_both_cases(_PRECONDITIONERS))] = "None"
+    preconditioner: Annotated[str, Parameter("the preconditioner", choices=_both_cases(_PRECONDITIONERS))] = (
+        "None"
+    )
     tolerance: Annotated[float, Parameter("residual at which the iteration ends", ge=0.0)] = 1.0e-8
     initial_tolerance: Annotated[float, Parameter("residual below which nothing is solved", ge=0.0)] = 1.0e-15
     maxiterations: Annotated[int, Parameter("greatest number of iterations", ge=0)] = 75

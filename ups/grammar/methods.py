@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from solver.declare import Parameter, SectionOf
+from solver.declare import Parameter, Section, SectionOf
 from solver.flags import Flags
 from solver.time_control import TimeControl
 from ups.deck import (
     Component,
     DataArchiver,
     GridSection,
-    LoadSection,
     MaterialProperties,
     Meta,
     MPMMaterials,
@@ -19,7 +18,6 @@ from ups.deck import (
     PhysicalConstants,
 )
 from ups.grammar.sections import CommonSections
-from solver.declare import Section
 
 
 class AnyMethod(CommonSections):

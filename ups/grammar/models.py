@@ -241,7 +241,9 @@ class FlameSheet(Section):
 class RateConstant(Section):
     """Arrhenius' law."""
 
-    type: Annotated[str, Parameter("the law", choices=("Arrhenius", "ModifiedArrhenius"), attribute=True)] = ""
+    type: Annotated[str, Parameter("the law", choices=("Arrhenius", "ModifiedArrhenius"), attribute=True)] = (
+        ""
+    )
     A: Annotated[float, Parameter("factor")]
     Ea: Annotated[float, Parameter("activation energy", unit="J/mol")]
     b: Annotated[float, Parameter("exponent of the temperature")] = 0.0
@@ -280,7 +282,9 @@ class SolidReaction(Conversion):
 
     E0: Annotated[float, Parameter("energy that is set free", unit="J/kg")]
     RateConstantModel: Annotated[RateConstant | None, Parameter("rate against temperature")] = None
-    RateModel: Annotated[Any, SectionOf("ups.grammar.models:RateModel"), Parameter("rate against progress")] = None
+    RateModel: Annotated[
+        Any, SectionOf("ups.grammar.models:RateModel"), Parameter("rate against progress")
+    ] = None
 
 
 class SimpleBurn(Conversion):
@@ -289,7 +293,9 @@ class SimpleBurn(Conversion):
     ThresholdPressure: Annotated[float, Parameter("pressure from which it burns", unit="Pa", ge=0.0)]
     ThresholdTemp: Annotated[float, Parameter("temperature from which it burns", unit="K", ge=0.0)]
     Enthalpy: Annotated[float, Parameter("heat of reaction", unit="J/kg", ge=0.0)]
-    BurnCoeff: Annotated[float, Parameter("burning rate at the reference pressure", unit="kg/(m^2 s)", ge=0.0)]
+    BurnCoeff: Annotated[
+        float, Parameter("burning rate at the reference pressure", unit="kg/(m^2 s)", ge=0.0)
+    ]
     refPressure: Annotated[float, Parameter("reference pressure", unit="Pa", ge=0.0)]
 
 
@@ -343,7 +349,9 @@ class DetonationDetected(Section):
 class IntervalChanges(Section):
     """When output changes."""
 
-    PressureSwitch: Annotated[Any, SectionOf("ups.grammar.models:PressureSwitch"), Parameter("at a pressure")] = None
+    PressureSwitch: Annotated[
+        Any, SectionOf("ups.grammar.models:PressureSwitch"), Parameter("at a pressure")
+    ] = None
     DetonationDetected: Annotated[
         Any, SectionOf("ups.grammar.models:DetonationDetected"), Parameter("at detonation")
     ] = None
@@ -462,7 +470,8 @@ class Table(Section):
     name: Annotated[str, Parameter("the table", choices=("adiabatic",), attribute=True)] = ""
     type: Annotated[str, Parameter("format", choices=("Arches",), attribute=True)] = ""
     defaultValue: Annotated[
-        tuple[float, ...], Parameter("value of a variable that is not given", repeated=True, tag_attributes=("name",))
+        tuple[float, ...],
+        Parameter("value of a variable that is not given", repeated=True, tag_attributes=("name",)),
     ] = ()
     derivedValue: Annotated[
         tuple[str, ...], Parameter("a value computed from others", repeated=True, tag_attributes=("name",))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-import solver.materials.damage
-import solver.materials.erosion
 from solver.declare import Parameter, Section, SectionOf, SubModel
+from solver.materials.damage import DAMAGE
+from solver.materials.erosion import EROSION
 
 _UNREAD = "no part of Uintah reads it"
 
@@ -14,10 +14,12 @@ _UNREAD = "no part of Uintah reads it"
 class MaterialExtension(Section):
     """What a material may say besides what this program runs."""
 
-    damage_model: Annotated[Any, SubModel("damage")] = None
-    erosion: Annotated[Any, SubModel("erosion")] = None
+    damage_model: Annotated[Any, SubModel(DAMAGE.name)] = None
+    erosion: Annotated[Any, SubModel(EROSION.name)] = None
     diffusion_model: Annotated[
-        Any, SectionOf("ups.grammar.diffusion:DiffusionModel"), Parameter("diffusion of a scalar", unsupported="scalar diffusion")
+        Any,
+        SectionOf("ups.grammar.diffusion:DiffusionModel"),
+        Parameter("diffusion of a scalar", unsupported="scalar diffusion"),
     ] = None
     do_conc_reduction: Annotated[
         bool, Parameter("reduce the concentration over the domain", unsupported="scalar diffusion")
@@ -35,7 +37,8 @@ class MaterialExtension(Section):
         float, Parameter("pore pressure at the start", unit="Pa", unsupported="coupled flow")
     ] = 0.0
     allow_DWIndex_correction: Annotated[
-        bool, Parameter("renumber materials of a restart", ignored="materials are numbered by the deck's order")
+        bool,
+        Parameter("renumber materials of a restart", ignored="materials are numbered by the deck's order"),
     ] = False
     applied_contact_model: Annotated[bool, Parameter("a mark of contact", ignored=_UNREAD)] = False
     stress_free: Annotated[bool, Parameter("a mark of a material without stress", ignored=_UNREAD)] = False

@@ -61,9 +61,7 @@ class TaskMonitoring(Section):
     per_cell: Annotated[bool, Parameter("record costs a cell")] = False
     attribute: Annotated[
         tuple[str, ...],
-        Parameter(
-            "a cost of all tasks", choices=("LoadBalancerCost", "ExecTime", "WaitTime"), repeated=True
-        ),
+        Parameter("a cost of all tasks", choices=("LoadBalancerCost", "ExecTime", "WaitTime"), repeated=True),
     ] = ()
     task: Annotated[tuple[MonitoredTask, ...], Parameter("a task")] = ()
 
@@ -113,13 +111,15 @@ class Scheduler(Section):
     type: Annotated[
         str,
         Parameter(
-            "the scheduler", choices=("MPI", "DynamicMPI", "Unified", "KokkosOpenMP", "Kokkos"), attribute=True
+            "the scheduler",
+            choices=("MPI", "DynamicMPI", "Unified", "KokkosOpenMP", "Kokkos"),
+            attribute=True,
         ),
     ] = "MPI"
     small_messages: Annotated[bool, Parameter("send each variable by itself")] = True
-    taskReadyQueueAlg: Annotated[
-        str, Parameter("which task is run next", choices=tuple(_QUEUES.split()))
-    ] = "MostMessages"
+    taskReadyQueueAlg: Annotated[str, Parameter("which task is run next", choices=tuple(_QUEUES.split()))] = (
+        "MostMessages"
+    )
     TaskMonitoring: Annotated[
         Any, SectionOf("ups.grammar.parallel:TaskMonitoring"), Parameter("which costs are recorded")
     ] = None

@@ -107,33 +107,34 @@ for _line in _TABLE.strip().splitlines():
 _OTHERS = """
     BndyForce_xminus BndyForce_xplus BndyForce_yminus BndyForce_yplus BndyForce_zminus BndyForce_zplus
     BndyTraction_xminus BndyTraction_xplus BndyTraction_yminus BndyTraction_yplus BndyTraction_zminus
-    BndyTraction_zplus BndyContactArea_xminus BndyContactArea_xplus BndyContactArea_yminus BndyContactArea_yplus
-    BndyContactArea_zminus BndyContactArea_zplus BndyContactCellArea_xminus BndyContactCellArea_xplus
-    BndyContactCellArea_yminus BndyContactCellArea_yplus BndyContactCellArea_zminus BndyContactCellArea_zplus
-    NTractionXMinus NTractionXPlus NTractionYMinus NTractionYPlus NTractionZMinus NTractionZPlus
-    D F HeatReleaseRate ICE_totalIntEng MPM_totalIntEng Li1 Li2 Li3 Li4 Li5 MaxConc MinConc
-    MesoBurn.BurningCell MesoBurn.SurfTemp Simple_Burn::onSurface Simple_Burn::surfaceTemp SteadyBurn.BurningCell
-    SteadyBurn.SurfTemp SteadyBurn.numPPC UnsteadyBurn.BurningCell UnsteadyBurn.PartSurfTemp
-    UnsteadyBurn.PartSurfTempGrad UnsteadyBurn.SurfTemp UnsteadyBurn.SurfTempGrad TMV_CC Tdot TempX_FC TempY_FC
-    TempZ_FC TotalConc TotalEng_src TotalIntEng_src TotalMass_src TotalMom_src adjOutIntervals aveSurfTemp beta
-    burnedMass compressiblity cumulativeEnergyReleased cumulativeEnergyReleased_src dTdt_CC dVdt_CC delF
-    detLocalTo dispInc dispNew dt_chemistry dt_chemistry_limiter eng_L_ME_CC eng_adv eng_exch_error f_theta
-    flaggedCells gamma gradPAccNC grad_P_XFC grad_P_YFC grad_P_ZFC grad_dp_XFC grad_dp_YFC grad_dp_ZFC imp_delP
+    BndyTraction_zplus BndyContactArea_xminus BndyContactArea_xplus BndyContactArea_yminus
+    BndyContactArea_yplus BndyContactArea_zminus BndyContactArea_zplus BndyContactCellArea_xminus
+    BndyContactCellArea_xplus BndyContactCellArea_yminus BndyContactCellArea_yplus
+    BndyContactCellArea_zminus BndyContactCellArea_zplus NTractionXMinus NTractionXPlus NTractionYMinus
+    NTractionYPlus NTractionZMinus NTractionZPlus D F HeatReleaseRate ICE_totalIntEng MPM_totalIntEng Li1
+    Li2 Li3 Li4 Li5 MaxConc MinConc MesoBurn.BurningCell MesoBurn.SurfTemp Simple_Burn::onSurface
+    Simple_Burn::surfaceTemp SteadyBurn.BurningCell SteadyBurn.SurfTemp SteadyBurn.numPPC
+    UnsteadyBurn.BurningCell UnsteadyBurn.PartSurfTemp UnsteadyBurn.PartSurfTempGrad UnsteadyBurn.SurfTemp
+    UnsteadyBurn.SurfTempGrad TMV_CC Tdot TempX_FC TempY_FC TempZ_FC TotalConc TotalEng_src
+    TotalIntEng_src TotalMass_src TotalMom_src adjOutIntervals aveSurfTemp beta burnedMass compressiblity
+    cumulativeEnergyReleased cumulativeEnergyReleased_src dTdt_CC dVdt_CC delF detLocalTo dispInc dispNew
+    dt_chemistry dt_chemistry_limiter eng_L_ME_CC eng_adv eng_exch_error f_theta flaggedCells gamma
+    gradPAccNC grad_P_XFC grad_P_YFC grad_P_ZFC grad_dp_XFC grad_dp_YFC grad_dp_ZFC imp_delP
     intE_source_CC int_eng_L_CC ignitionTime kurtosis logLaw_roughness mag_div_vel_CC mass_L_CC mass_adv
-    maxMach_xminus maxMach_xplus maxMach_yminus maxMach_yplus maxMach_zminus maxMach_zplus max_RHS modelEng_src
-    modelMass_src modelMom_src modelVol_src mom_L_CC mom_L_ME_CC mom_adv mom_exch_error mom_source_CC onSurface
-    pressX_FC pressY_FC pressZ_FC pressureNC rhs rho_micro_CC shearTurbStrss normalTurbStrss sp_volX_FC
-    sp_volY_FC sp_volZ_FC sp_vol_L_CC sp_vol_adv sp_vol_src_CC specific_heat sum_imp_delP sum_rho_CC surfaceTemp
-    tau_X_FC tau_Y_FC tau_Z_FC term2 term3 thermalCond totalCVMomentum totalFluxes totalIntEngExchanged
-    totalMassExchanged total_viscosity_CC turb_viscosity_CC uvel_FC uvel_FCME velTau_CC vel_CC_Xchange
-    temp_CC_Xchange viscosity viscous_src_CC viscousFlowFlag vol_fracX_FC vol_fracY_FC vol_fracZ_FC vvel_FC
-    vvel_FCME wvel_FC wvel_FCME SGS_ReynoldsStress matrix radiationVolq abskg sigmaT4 divQ c SpecificVol Suction
-    nPPC t.x t.tracerID t.velocity
-    g.massF0 g.massF1 g.velocityF0 g.velocityF1 g.internalforceF0 g.internalforceF1 g.surfnormF0 g.surfnormF1
+    maxMach_xminus maxMach_xplus maxMach_yminus maxMach_yplus maxMach_zminus maxMach_zplus max_RHS
+    modelEng_src modelMass_src modelMom_src modelVol_src mom_L_CC mom_L_ME_CC mom_adv mom_exch_error
+    mom_source_CC onSurface pressX_FC pressY_FC pressZ_FC pressureNC rhs rho_micro_CC shearTurbStrss
+    normalTurbStrss sp_volX_FC sp_volY_FC sp_volZ_FC sp_vol_L_CC sp_vol_adv sp_vol_src_CC specific_heat
+    sum_imp_delP sum_rho_CC surfaceTemp tau_X_FC tau_Y_FC tau_Z_FC term2 term3 thermalCond totalCVMomentum
+    totalFluxes totalIntEngExchanged totalMassExchanged total_viscosity_CC turb_viscosity_CC uvel_FC
+    uvel_FCME velTau_CC vel_CC_Xchange temp_CC_Xchange viscosity viscous_src_CC viscousFlowFlag
+    vol_fracX_FC vol_fracY_FC vol_fracZ_FC vvel_FC vvel_FCME wvel_FC wvel_FCME SGS_ReynoldsStress matrix
+    radiationVolq abskg sigmaT4 divQ c SpecificVol Suction nPPC t.x t.tracerID t.velocity g.massF0
+    g.massF1 g.velocityF0 g.velocityF1 g.internalforceF0 g.internalforceF1 g.surfnormF0 g.surfnormF1
     p.fluidvelocity p.porepressureFilter+ p.porepressure+ p.stress+ p.deformationMeasure+ p.normalRotRate
-    g.normalRotAcc g.normalRotMass g.normalRotMoment p.plasticEnergy
-    p.ArenaBETA p.ArenaCR p.ArenaFSLOPE p.ArenaPEAKI1 p.ArenaSTREN p.ArenaT1 p.ArenaT2 p.ArenaYSLOPE
-    p.AreniscaFlag p.arenisca_kappa p.p_q p.elasticStrainVol p.plasticStrainVol
+    g.normalRotAcc g.normalRotMass g.normalRotMoment p.plasticEnergy p.ArenaBETA p.ArenaCR p.ArenaFSLOPE
+    p.ArenaPEAKI1 p.ArenaSTREN p.ArenaT1 p.ArenaT2 p.ArenaYSLOPE p.AreniscaFlag p.arenisca_kappa p.p_q
+    p.elasticStrainVol p.plasticStrainVol
 """
 
 for _name in (*_OTHERS.split(), *KNOWN_LABELS):

@@ -15,7 +15,9 @@ _ONE_LEVEL = "there is one level of the grid"
 class CommonSections(Section):
     """Sections that every component takes."""
 
-    AMR: Annotated[Any, SectionOf("ups.grammar.amr:Amr"), Parameter("refinement of the grid", ignored=_ONE_LEVEL)] = None
+    AMR: Annotated[
+        Any, SectionOf("ups.grammar.amr:Amr"), Parameter("refinement of the grid", ignored=_ONE_LEVEL)
+    ] = None
     Solver: Annotated[
         Any,
         SectionOf("ups.grammar.linear_solver:LinearSolver"),
@@ -65,7 +67,9 @@ class CommonSections(Section):
 class MpmSections(CommonSections):
     """Sections of other methods, which the material point method passes over."""
 
-    CFD: Annotated[Any, SectionOf("ups.grammar.ice:Cfd"), Parameter("options of gas dynamics", ignored=_GAS)] = None
+    CFD: Annotated[
+        Any, SectionOf("ups.grammar.ice:Cfd"), Parameter("options of gas dynamics", ignored=_GAS)
+    ] = None
     Models: Annotated[
         Any, SectionOf("ups.grammar.models:Models"), Parameter("sources and reactions of gases", ignored=_GAS)
     ] = None
@@ -81,7 +85,9 @@ class MaterialPropertiesExtension(Section):
     """Materials of other methods."""
 
     ICE: Annotated[
-        Any, SectionOf("ups.grammar.ice_material:IceMaterials"), Parameter("materials of gas dynamics", ignored=_GAS)
+        Any,
+        SectionOf("ups.grammar.ice_material:IceMaterials"),
+        Parameter("materials of gas dynamics", ignored=_GAS),
     ] = None
     exchange_properties: Annotated[
         Any,
@@ -108,7 +114,9 @@ class BoxExtension(Section):
 class PhysicalConstantsExtension(Section):
     """Constants that the material point method does not read."""
 
-    reference_point: Annotated[Vector, Parameter("where the reference pressure holds", unit="m", ignored=_GAS)] = (
+    reference_point: Annotated[
+        Vector, Parameter("where the reference pressure holds", unit="m", ignored=_GAS)
+    ] = (
         0.0,
         0.0,
         0.0,

@@ -70,7 +70,7 @@ def wave_speed(model: Any, density: float, temperature: float) -> float | None:
 
 
 def stable_step(deck: DeckView) -> float | None:
-    """The first time step that stability allows, times the deck's multiplier; None where it cannot be told."""
+    """The first stable time step times the deck's multiplier; None where it cannot be told."""
     domain = deck.domain
     found = [m for m in materials_in_numbers(deck) if m.sound_speed > 0.0]
     multiplier = deck.number("Time/timestep_multiplier")

@@ -9,17 +9,53 @@ from ups.element import Element
 from ups.rules.rule import DeckView, Rule
 from ups.values import numbers
 
-LABELS = (
-    "Velocity Symmetric Temperature Pressure Density SpecificVol Concentration Specific_heat Viscosity "
-    "PosCharge NegCharge cc_temperature"
-).split()
+LABELS = [
+    "Velocity",
+    "Symmetric",
+    "Temperature",
+    "Pressure",
+    "Density",
+    "SpecificVol",
+    "Concentration",
+    "Specific_heat",
+    "Viscosity",
+    "PosCharge",
+    "NegCharge",
+    "cc_temperature",
+]
 VALUED = ("Dirichlet", "Neumann")
 WITHOUT_VALUE = ("Symmetric",)
-KINDS = (
-    "Neumann Dirichlet symmetry FreeSlipWall LODI computeFromDensity Sine slip Custom VelocityInlet StABL "
-    "PressureBC WallBC OutletBC NOutletBC VelocityFileInput MassFlowInlet PartMassFlowInlet Swirl ScalarSwirl "
-    "FromFile ForcedDirichlet TurbulentInlet Tabulated powerLawProfile logLawProfile creep MMS_1 slipFlow"
-).split()
+KINDS = [
+    "Neumann",
+    "Dirichlet",
+    "symmetry",
+    "FreeSlipWall",
+    "LODI",
+    "computeFromDensity",
+    "Sine",
+    "slip",
+    "Custom",
+    "VelocityInlet",
+    "StABL",
+    "PressureBC",
+    "WallBC",
+    "OutletBC",
+    "NOutletBC",
+    "VelocityFileInput",
+    "MassFlowInlet",
+    "PartMassFlowInlet",
+    "Swirl",
+    "ScalarSwirl",
+    "FromFile",
+    "ForcedDirichlet",
+    "TurbulentInlet",
+    "Tabulated",
+    "powerLawProfile",
+    "logLawProfile",
+    "creep",
+    "MMS_1",
+    "slipFlow",
+]
 
 
 class BoundaryValue(Rule):
@@ -55,7 +91,9 @@ class BoundaryValue(Rule):
         if label is not None and name and name not in LABELS and not name.startswith(("scalar", "mass")):
             nearest = did_you_mean(name, LABELS)
             if nearest:
-                yield self.warning(f"no method has a condition on {name!r}", label, f"did you mean {nearest}?")
+                yield self.warning(
+                    f"no method has a condition on {name!r}", label, f"did you mean {nearest}?"
+                )
 
     def _check_value(self, condition: Element) -> Iterator[Diagnostic]:
         kind, label = condition.attributes.get("var"), condition.attributes.get("label")
@@ -70,5 +108,7 @@ class BoundaryValue(Rule):
         form = "[vx, vy, vz]" if width == 3 else "one number"
         if found is None or len(found) != width:
             message = f"the <value> of {label.value} is {value.text!r}; it must be {form}"
-            report = self.error if found is None else self.warning  # Uintah passes over a wrong number of them
+            report = (
+                self.error if found is None else self.warning
+            )  # Uintah passes over a wrong number of them
             yield report(message, value.texts[0], f"write {form}")

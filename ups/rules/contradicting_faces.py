@@ -36,7 +36,9 @@ class ContradictingFaces(Rule):
                 continue
             name = side.value.strip()
             if periodic[_AXES.index(name[0])] and face.children:
-                yield self.warning(f"the grid is periodic in {name[0]}: the face {name} has no condition", face)
+                yield self.warning(
+                    f"the grid is periodic in {name[0]}: the face {name} has no condition", face
+                )
             for condition in face.all("BCType"):
                 yield from self._compare(name, condition, given)
 
@@ -49,7 +51,9 @@ class ContradictingFaces(Rule):
         key = (side, label.value.strip(), index.value.strip() if index is not None else "all")
         before = given.setdefault(key, condition)
         if before is not condition and _meaning(before) != _meaning(condition):
-            message = f"{key[1]} of material {key[2]} on {side} was given otherwise on line {before.location.line}"
+            message = (
+                f"{key[1]} of material {key[2]} on {side} was given otherwise on line {before.location.line}"
+            )
             yield self.warning(message, condition, "keep one of the two")
 
 

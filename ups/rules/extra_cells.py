@@ -54,7 +54,7 @@ class ExtraCells(Rule):
 
 
 def _cells(level: Element | None, box: Element, tag: str) -> list[int] | None:
-    """The three integers of a tag of the block, else of the level, else zeros; None where they cannot be read."""
+    """Three integers of the block, else of the level, else zeros; None where they cannot be read."""
     child = box.get(tag) or (level.get(tag) if level is not None else None)
     if child is None:
         return [0, 0, 0]

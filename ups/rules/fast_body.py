@@ -31,8 +31,9 @@ class FastBody(Rule):
             if material.sound_speed > 0.0 and material.speed > _FACTOR * material.sound_speed:
                 body = material.element.get("geom_object")
                 at = body.get("velocity") if body is not None else None
+                ratio = material.speed / material.sound_speed
                 message = (
-                    f"the body moves at {material.speed:g}, {material.speed / material.sound_speed:.2g} times "
-                    f"the speed of sound in its material ({material.sound_speed:.3g})"
+                    f"the body moves at {material.speed:g}, {ratio:.2g} times the speed of sound in its "
+                    f"material ({material.sound_speed:.3g})"
                 )
                 yield self.warning(message, at or material.element, "are both in the same units?")

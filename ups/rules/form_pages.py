@@ -5,30 +5,50 @@ from __future__ import annotations
 PAGES: dict[str, str] = {
     "UPS001": "The file does not exist or may not be read. Check the path and its permissions.",
     "UPS002": "The file is not well-formed XML. Nothing behind the place can be trusted; repair it first.",
-    "UPS003": "A tag is not closed, or closed by another name, as in ``<radius>0.5</radus>``. Reading goes on "
-    "behind it as well as it can; further findings may follow from this one.",
-    "UPS004": "Bytes do not fit the encoding that the first line declares. Save the file as UTF-8, or declare "
-    '``encoding="ISO-8859-1"``.',
-    "UPS005": "A character stands in the file that XML forbids, often a stray byte of another program. Remove it.",
-    "UPS006": "Declarations of entities are not read, since they can hide other files or grow without end. "
-    "Write the text in their place.",
+    "UPS003": (
+        "A tag is not closed, or closed by another name, as in ``<radius>0.5</radus>``. Reading goes "
+        "on behind it as well as it can; further findings may follow from this one."
+    ),
+    "UPS004": (
+        "Bytes do not fit the encoding that the first line declares. Save the file as UTF-8, or "
+        'declare ``encoding="ISO-8859-1"``.'
+    ),
+    "UPS005": (
+        "A character stands in the file that XML forbids, often a stray byte of another program. Remove it."
+    ),
+    "UPS006": (
+        "Declarations of entities are not read, since they can hide other files or grow without end. "
+        "Write the text in their place."
+    ),
     "UPS007": "The file, its nesting or its includes are beyond what any deck needs.",
-    "UPS008": "A deck has the root ``<Uintah_specification>``; a file to include may also have "
-    "``<Uintah_Include>``.",
+    "UPS008": (
+        "A deck has the root ``<Uintah_specification>``; a file to include may also have "
+        "``<Uintah_Include>``."
+    ),
     "UPS010": "``<include>`` needs ``href``: the file to put in its place.",
-    "UPS011": "An included file was not found: beside the including file, from the working directory, in "
-    "``inputs/`` above, or among the program's own material files.",
+    "UPS011": (
+        "An included file was not found: beside the including file, from the working directory, in "
+        "``inputs/`` above, or among the program's own material files."
+    ),
     "UPS012": "Files include each other in a circle.",
     "UPS013": "The included file has no section of that name (or none with these attributes).",
     "UPS014": "A comment ``<!-- ups: ignore CODE -->`` keeps nothing quiet any more. Remove it.",
-    "UPS101": "A tag is missing without which the section cannot be read. Uintah stops with "
-    "``Required parameter not found``. Add the tag that the message names.",
-    "UPS102": "No section has this tag here; Uintah's validator stops, and without it the tag would be ignored in "
-    "silence. Mostly it is misspelt: the nearest tag is suggested.",
+    "UPS101": (
+        "A tag is missing without which the section cannot be read. Uintah stops with ``Required "
+        "parameter not found``. Add the tag that the message names."
+    ),
+    "UPS102": (
+        "No section has this tag here; Uintah's validator stops, and without it the tag would be "
+        "ignored in silence. Mostly it is misspelt: the nearest tag is suggested."
+    ),
     "UPS103": "The tag exists, but belongs in another section, which the message names.",
-    "UPS104": "A tag stands twice where one is allowed; Uintah's validator stops, its reader would take the first.",
-    "UPS105": "The tag belongs to another model of the family than the chosen one and is not read. Uintah lets "
-    "most of these pass; they mislead whoever reads the deck.",
+    "UPS104": (
+        "A tag stands twice where one is allowed; Uintah's validator stops, its reader would take the first."
+    ),
+    "UPS105": (
+        "The tag belongs to another model of the family than the chosen one and is not read. Uintah "
+        "lets most of these pass; they mislead whoever reads the deck."
+    ),
     "UPS106": "Of several tags a deck gives exactly one: none, or more than one, is given.",
     "UPS107": "Tags that make sense together only are given in part.",
     "UPS111": "An attribute is missing without which the tag cannot be read.",
@@ -49,13 +69,17 @@ PAGES: dict[str, str] = {
     "UPS305": "An include file has another name today; the old one is understood.",
     "UPS410": "A name (of a piece of geometry) is used before it is given, or nowhere given.",
     "UPS411": "The shapes of a material hold no point of the particle lattice.",
-    "UPS412": "Uintah knows this method, model or option; this program does not run it yet. The deck's tags are "
-    "checked all the same; ``ups run`` refuses it.",
+    "UPS412": (
+        "Uintah knows this method, model or option; this program does not run it yet. The deck's tags "
+        "are checked all the same; ``ups run`` refuses it."
+    ),
     "UPS404": "Times must increase from point to point.",
     "UPS501": "The property must be positive.",
     "UPS601": "The run was stopped.",
-    "UPS602": "A particle's state became infinite or was turned inside out; the time step may be too long or the "
-    "constants wrong.",
+    "UPS602": (
+        "A particle's state became infinite or was turned inside out; the time step may be too long "
+        "or the constants wrong."
+    ),
     "UPS603": "The archive cannot be read.",
     "UPS604": "The archive cannot be written.",
 }

@@ -48,7 +48,9 @@ class GeometryOutside(Rule):
                 ]
                 if outside:
                     span = f"{_point(domain.lower)} to {_point(domain.upper)}"
-                    message = f"<{shape.tag}> lies outside the grid in {', '.join(outside)}: the grid spans {span}"
+                    message = (
+                        f"<{shape.tag}> lies outside the grid in {', '.join(outside)}: the grid spans {span}"
+                    )
                     yield self.warning(message, shape)
 
 
@@ -59,8 +61,6 @@ def _bounds(shape: Any) -> tuple[Any, Any] | None:
     except (AttributeError, NotImplementedError, ValueError, ArithmeticError, OSError):
         return None
     return (lower, upper) if all(b >= a for a, b in zip(lower, upper, strict=True)) else None
-
-
 
 
 def _point(point: list[float]) -> str:

@@ -26,7 +26,9 @@ class LoadCurveId(Rule):
     def check(self, deck: DeckView) -> Iterator[Diagnostic]:
         """Look at the ids of all load curves."""
         first: dict[str, Element] = {}
-        for curve in (e for section in deck.all("PhysicalBC/MPM") for e in section.iter() if e.tag == "load_curve"):
+        for curve in (
+            e for section in deck.all("PhysicalBC/MPM") for e in section.iter() if e.tag == "load_curve"
+        ):
             number = curve.get("id")
             if number is None or not number.text:
                 continue

@@ -22,7 +22,7 @@ class MaterialIndex(Rule):
     ``<ICE>`` after them. In the list of a contact an index too many does nothing, so that bodies may pass
     through each other unnoticed: a warning. Elsewhere it stops the run or reads what is not there.
 
-    **Example.** ``<contact> <type>friction_bard</type> <materials>[0, 2]</materials> ...`` with two materials.
+    **Example.** ``<contact> <type>friction_bard</type> <materials>[0, 2]</materials>`` with two materials.
 
     **Repair.** Give indices below the number of materials. ``all`` or leaving out the tag means every one.
     """
@@ -74,5 +74,7 @@ class MaterialIndex(Rule):
         wrong = [n for n in found if not 0 <= n < count and n not in allowed]
         if wrong:
             last = count - 1 - ranges
-            message = f"{what} names material {wrong[0]}; the deck has {'only 0' if not last else f'0 to {last}'}"
+            message = (
+                f"{what} names material {wrong[0]}; the deck has {'only 0' if not last else f'0 to {last}'}"
+            )
             yield (self.error if severe else self.warning)(message, at)

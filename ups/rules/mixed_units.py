@@ -18,8 +18,8 @@ _SI_SOUND = 30000.0
 class MixedUnits(Rule):
     """The constants of a material look as if they were in different systems of units.
 
-    **Why.** Any consistent units will do, but a density in g/cm^3 beside moduli in Pa makes waves thirty times
-    too fast and the time step as much too small. It is suspected where the density is below that of any
+    **Why.** Any consistent units will do, but a density in g/cm^3 beside moduli in Pa makes waves thirty
+    times too fast and the time step as much too small. It is suspected where the density is below that of any
     solid in kg/m^3, the specific heat is as in SI, and sound would be faster than in any matter.
 
     **Example.** ``<density>7.8</density> ... <bulk_modulus>1.6e11</bulk_modulus>``
@@ -43,4 +43,6 @@ class MixedUnits(Rule):
                     f"a density of {material.density:g} beside these moduli makes sound run at "
                     f"{material.sound_speed:.3g}; the units look mixed"
                 )
-                yield self.warning(message, at, f"in SI the density would be about {1000.0 * material.density:g}")
+                yield self.warning(
+                    message, at, f"in SI the density would be about {1000.0 * material.density:g}"
+                )

@@ -100,7 +100,9 @@ def _vector(element: Element, tag: str) -> list[float]:
     return found if found is not None and len(found) == 3 else []
 
 
-def _spacing(level: Element | None, lower: list[float], upper: list[float], box: Element) -> list[float] | None:
+def _spacing(
+    level: Element | None, lower: list[float], upper: list[float], box: Element
+) -> list[float] | None:
     for owner in (box, level):
         found = _vector(owner, "spacing") if owner is not None else []
         if found:
@@ -146,7 +148,12 @@ class Rule:
         return self._finding(Severity.NOTE, message, at, suggestion, fix)
 
     def _finding(
-        self, severity: Severity, message: str, at: Located | Location, suggestion: str | None, fix: Fix | None
+        self,
+        severity: Severity,
+        message: str,
+        at: Located | Location,
+        suggestion: str | None,
+        fix: Fix | None,
     ) -> Diagnostic:
         place = at if isinstance(at, Location) else at.location
         return Diagnostic(self.code, severity, message, place, suggestion, fix)

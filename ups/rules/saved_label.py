@@ -11,17 +11,15 @@ from ups.element import Attribute, Element
 from ups.grammar.saved_labels import LABELS, PATTERNS
 from ups.rules.rule import DeckView, Rule
 
-ALWAYS = frozenset(
-    """
+_ALWAYS = """
     p.scalefactor p.JThermal g.mass g.volume g.velocity g.velocity_star g.acceleration g.internalforce
-    g.externalforce g.temperature g.temperatureRate g.stressFS g.color g.massall g.surfnorm g.position g.normtraction
-    g.externalHeatRate g.dTdt g.contact g.thermalContactTemperatureRate g.velocityBC g.alphaMaterial g.zoi
-    g.temperaturenobc g.temperatureStar g.matlProminence g.normAlphaToBeta g.surf g.displacement NC_CCweight
-    KineticEnergy StrainEnergy AccStrainEnergy ThermalEnergy TotalMass TotalMomentum TotalVolumeDeformed
-    CenterOfMassPosition RigidReactionForce RigidReactionTorque SumTransmittedForce SumTransmittedTorque
-    TotalMomentOfInertia TotalLocalizedParticle frictionalWork
-    """.split()
-)
+    g.externalforce g.temperature g.temperatureRate g.stressFS g.color g.massall g.surfnorm g.position
+    g.normtraction g.externalHeatRate g.dTdt g.contact g.thermalContactTemperatureRate g.velocityBC
+    g.alphaMaterial g.zoi g.temperaturenobc g.temperatureStar g.matlProminence g.normAlphaToBeta g.surf
+    g.displacement NC_CCweight KineticEnergy StrainEnergy AccStrainEnergy ThermalEnergy TotalMass
+    TotalMomentum TotalVolumeDeformed CenterOfMassPosition RigidReactionForce RigidReactionTorque
+    SumTransmittedForce SumTransmittedTorque TotalMomentOfInertia TotalLocalizedParticle frictionalWork
+"""
 """What every deck of the method can save."""
 
 _WITH_STATE = ("constitutive_model", "damage_model", "erosion")
@@ -65,7 +63,9 @@ class SavedLabel(Rule):
         kind = name.partition(".")[0] + "." if "." in name else ""
         same = sorted(p for p in provided if p.startswith(kind) and (kind or "." not in p))
         message = f"no model of this deck computes {name!r}; those that it has are {', '.join(same)}"
-        suggestion = f"did you mean {nearest}?" if nearest else "remove it, or choose a model that computes it"
+        suggestion = (
+            f"did you mean {nearest}?" if nearest else "remove it, or choose a model that computes it"
+        )
         return self.warning(message, label, suggestion, Fix((save.removed(),), safe=False))
 
 
@@ -89,7 +89,7 @@ def _provided(deck: DeckView) -> set[str]:
     from solver.materials.constitutive import state_record
     from solver.particles import Particles, state_variables
 
-    found = {variable.label for variable in state_variables(Particles).values()} | ALWAYS
+    found = {variable.label for variable in state_variables(Particles).values()} | {*_ALWAYS.split()}
     parts = (e for m in deck.particle_materials for e in m.children if e.tag in _WITH_STATE)
     states = {state_record(model) for part in parts if (model := deck.record(part)) is not None}
     found |= {variable.label for state in states for variable in state_variables(state).values()}

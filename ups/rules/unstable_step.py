@@ -36,7 +36,9 @@ class UnstableStep(Rule):
         if stable is None or least is None or at is None:
             return
         if least > stable:
-            message = f"<delt_min> is {least:g}, and the stable time step about {stable:.2g}: the run is unstable"
+            message = (
+                f"<delt_min> is {least:g}, and the stable time step about {stable:.2g}: the run is unstable"
+            )
             yield self.warning(message, at, f"set it below {stable:.2g}")
         steps = (end or 0.0) / min(stable, largest or stable)
         if steps > _MANY_STEPS and not deck.number("Time/max_Timesteps"):

@@ -6,12 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from solver.materials.polar_rotation import polar_rotation
-from solver.tensor import Tensor
+from solver.tensor import Tensor, rotation
 
 
 def rotation_of(F):
-    R = polar_rotation(Tensor(*np.ravel(F)))
+    R = rotation(Tensor(*np.ravel(F)))
     return np.array([[R.xx, R.xy, R.xz], [R.yx, R.yy, R.yz], [R.zx, R.zy, R.zz]])
 
 

@@ -54,8 +54,12 @@ class ArenaYield(Section):
 class ArenaSoil(Section):
     """Soil whose pores hold water and air (Banerjee and Brannon)."""
 
-    elastic_moduli_model: Annotated[Any, SectionOf(f"{_HERE}:ArenaElasticity"), Parameter("elastic moduli")] = None
-    plastic_yield_condition: Annotated[Any, SectionOf(f"{_HERE}:ArenaYield"), Parameter("the limit and the cap")]
+    elastic_moduli_model: Annotated[
+        Any, SectionOf(f"{_HERE}:ArenaElasticity"), Parameter("elastic moduli")
+    ] = None
+    plastic_yield_condition: Annotated[
+        Any, SectionOf(f"{_HERE}:ArenaYield"), Parameter("the limit and the cap")
+    ]
     initial_porosity: Annotated[float, Parameter("porosity at the start", ge=0.0, le=1.0)]
     initial_saturation: Annotated[float, Parameter("share of the pores with water", ge=0.0, le=1.0)]
     initial_fluid_pressure: Annotated[float, Parameter("pressure of the pore fluid at the start", unit="Pa")]

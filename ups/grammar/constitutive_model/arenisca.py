@@ -40,7 +40,9 @@ class CapModel(Section):
     fluid_B0: Annotated[float, Parameter("bulk modulus of the pore fluid", unit="Pa")]
     B0: Annotated[float, Parameter("bulk modulus", unit="Pa")]
     G0: Annotated[float, Parameter("shear modulus", unit="Pa")]
-    fluid_pressure_initial: Annotated[float, Parameter("pressure of the pore fluid at the start", unit="Pa")] = 0.0
+    fluid_pressure_initial: Annotated[
+        float, Parameter("pressure of the pore fluid at the start", unit="Pa")
+    ] = 0.0
     T1_rate_dependence: Annotated[float, Parameter("first constant of the rate dependence", unit="s")] = 0.0
     T2_rate_dependence: Annotated[float, Parameter("second constant of the rate dependence")] = 0.0
     subcycling_characteristic_number: Annotated[float, Parameter("fineness of sub-steps")] = 256.0
@@ -71,31 +73,3 @@ class Arenisca(CapModel):
     G2: Annotated[float, Parameter("pressure of the stiffening", unit="Pa")] = 0.0
     G3: Annotated[float, Parameter("softening by plastic strain", unit="Pa")] = 0.0
     G4: Annotated[float, Parameter("strain of that softening")] = 0.0
-
-
-@known("constitutive_model", "Arenisca3")
-class Arenisca3(CapModel):
-    """The third version: a curved limit, elasticity that depends on pressure and strain."""
-
-    STREN: Annotated[float, Parameter("shear limit at high pressure", unit="Pa")]
-    YSLOPE: Annotated[float, Parameter("slope of the shear limit at high pressure")]
-    BETA_nonassociativity: Annotated[float, Parameter("share of associated flow")]
-    B01: Annotated[float, Parameter("bulk modulus of another version", unit="Pa")] = 0.0
-    B1: Annotated[float, Parameter("bulk modulus at high pressure", unit="Pa")]
-    B2: Annotated[float, Parameter("pressure of the stiffening", unit="Pa")]
-    B3: Annotated[float, Parameter("softening by plastic strain", unit="Pa")]
-    B4: Annotated[float, Parameter("strain of that softening")]
-    G1: Annotated[float, Parameter("shear modulus at high pressure", unit="Pa")]
-    G2: Annotated[float, Parameter("pressure of the stiffening", unit="Pa")]
-    G3: Annotated[float, Parameter("softening by plastic strain", unit="Pa")]
-    G4: Annotated[float, Parameter("strain of that softening")]
-    p2_crush_curve: Annotated[float, Parameter("second constant of the closing")]
-
-
-@known("constitutive_model", "Arenisca4")
-class Arenisca4(Arenisca3):
-    """The fourth version: the third invariant counts."""
-
-    J3_type: Annotated[int, Parameter("dependence on the third invariant")] = 0
-    J3_psi: Annotated[float, Parameter("ratio of strengths in extension and compression")] = 1.0
-    principal_stress_cutoff: Annotated[float, Parameter("largest principal stress", unit="Pa")] = 1.0e99

@@ -48,6 +48,8 @@ class CamClay(Section):
     """Modified Cam clay at finite strain."""
 
     pressure_model: Annotated[Any, SectionOf(f"{_HERE}:BorjaPressure"), Parameter("law of the pressure")]
-    elastic_shear_modulus_model: Annotated[Any, SectionOf(f"{_HERE}:BorjaShear"), Parameter("law of the shear")]
+    elastic_shear_modulus_model: Annotated[
+        Any, SectionOf(f"{_HERE}:BorjaShear"), Parameter("law of the shear")
+    ]
     plastic_yield_condition: Annotated[Any, SectionOf(f"{_HERE}:CamClayYield"), Parameter("the ellipse")]
     internal_variable_model: Annotated[Any, SectionOf(f"{_HERE}:Consolidation"), Parameter("its growth")]

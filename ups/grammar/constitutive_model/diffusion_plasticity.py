@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-import solver.materials.elastic_plastic  # declares the families of its parts
 from solver.declare import Parameter, Section, SubModel
+from solver.materials.deviatoric_stress import DEVIATORIC_STRESS
+from solver.materials.equation_of_state import EQUATION_OF_STATE
+from solver.materials.flow_stress import FLOW_STRESS
+from solver.materials.melting import MELTING
+from solver.materials.return_algorithm import RETURN_ALGORITHM
+from solver.materials.shear_modulus import SHEAR_MODULUS
+from solver.materials.stability import STABILITY
+from solver.materials.yield_condition import YIELD_CONDITION
 from ups.grammar import known
 
 
@@ -26,11 +33,11 @@ class DiffusionElasticPlastic(Section):
     evolve_damage: Annotated[bool, Parameter("let damage grow")] = True
     check_TEPLA_failure_criterion: Annotated[bool, Parameter("fail at the critical porosity")] = True
     check_max_stress_failure: Annotated[bool, Parameter("fail at the critical stress")] = False
-    flow_model: Annotated[Any, SubModel("flow_stress")] = None
-    yield_condition: Annotated[Any, SubModel("yield_condition")] = None
-    equation_of_state: Annotated[Any, SubModel("equation_of_state")] = None
-    shear_modulus_model: Annotated[Any, SubModel("shear_modulus")] = None
-    melting_temp_model: Annotated[Any, SubModel("melting")] = None
-    deviatoric_stress_model: Annotated[Any, SubModel("deviatoric_stress")] = None
-    stability_check: Annotated[Any, SubModel("stability")] = None
-    plastic_convergence_algo: Annotated[Any, SubModel("return_algorithm")] = None
+    flow_model: Annotated[Any, SubModel(FLOW_STRESS.name)] = None
+    yield_condition: Annotated[Any, SubModel(YIELD_CONDITION.name)] = None
+    equation_of_state: Annotated[Any, SubModel(EQUATION_OF_STATE.name)] = None
+    shear_modulus_model: Annotated[Any, SubModel(SHEAR_MODULUS.name)] = None
+    melting_temp_model: Annotated[Any, SubModel(MELTING.name)] = None
+    deviatoric_stress_model: Annotated[Any, SubModel(DEVIATORIC_STRESS.name)] = None
+    stability_check: Annotated[Any, SubModel(STABILITY.name)] = None
+    plastic_convergence_algo: Annotated[Any, SubModel(RETURN_ALGORITHM.name)] = None

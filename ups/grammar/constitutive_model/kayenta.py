@@ -72,7 +72,7 @@ class Diamm(Section):
     PTR_artificialViscosity PTR_artificialViscousHeating: artificial viscosity and its heat
     PTR_BulkModulus PTR_ShearModulus PTR_rho_orig: elasticity
     PTR_FlowStress PTR_HardeningModulus PTR_InitialPlasticStrain PTR_J2RelaxationTime: plasticity
-    PTR_NumCrackFamilies PTR_MeanFlawSize PTR_FlawDensity PTR_StdFlawSize PTR_FlawDistType: distribution of flaws
+    PTR_NumCrackFamilies PTR_MeanFlawSize PTR_FlawDensity PTR_StdFlawSize PTR_FlawDistType: the flaws
     PTR_MinFlawSize PTR_MaxFlawSize PTR_FlawDistExponent PTR_RandomizeFlawDist: distribution of flaws
     PTR_RandomSeed PTR_RandomizeMethod PTR_BinBias: random draw of flaws
     PTR_KIc PTR_FlawFriction PTR_FlawAngle PTR_FlawGrowthExponent PTR_FlawGrowthAlpha: growth of flaws

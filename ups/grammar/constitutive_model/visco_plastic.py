@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-import solver.materials.elastic_plastic  # declares the families of its parts
 from solver.declare import Parameter, Section, SectionOf, SubModel
+from solver.materials.equation_of_state import EQUATION_OF_STATE
+from solver.materials.melting import MELTING
+from solver.materials.shear_modulus import SHEAR_MODULUS
+from solver.materials.stability import STABILITY
 from ups.grammar import known
 
 
@@ -44,10 +47,10 @@ class ViscoPlastic(Section):
     visco_plasticity_model: Annotated[
         Any, SectionOf("ups.grammar.constitutive_model.visco_plastic:SuvicI"), Parameter("law of the flow")
     ] = None
-    equation_of_state: Annotated[Any, SubModel("equation_of_state")] = None
-    stability_check: Annotated[Any, SubModel("stability")] = None
-    shear_modulus_model: Annotated[Any, SubModel("shear_modulus")] = None
-    melting_temp_model: Annotated[Any, SubModel("melting")] = None
+    equation_of_state: Annotated[Any, SubModel(EQUATION_OF_STATE.name)] = None
+    stability_check: Annotated[Any, SubModel(STABILITY.name)] = None
+    shear_modulus_model: Annotated[Any, SubModel(SHEAR_MODULUS.name)] = None
+    melting_temp_model: Annotated[Any, SubModel(MELTING.name)] = None
     coeff_thermal_expansion: Annotated[float, Parameter("thermal expansion", unit="1/K")] = 0.0
     useModifiedEOS: Annotated[bool, Parameter("stiffen in compression")] = False
     remove_particles: Annotated[bool, Parameter("remove what fails")] = True

@@ -25,7 +25,9 @@ class Corrugated(Section):
 class HalfSpace(Section):
     """All points on one side of a plane."""
 
-    type: Annotated[str, Parameter("how the plane is given", choices=("absolute", "relative"), attribute=True)]
+    type: Annotated[
+        str, Parameter("how the plane is given", choices=("absolute", "relative"), attribute=True)
+    ]
     planePoint: Annotated[Vector, Parameter("a point of the plane", unit="m")] = (0.0, 0.0, 0.0)
     normal: Annotated[Vector, Parameter("direction out of the half space")] = (0.0, 0.0, 0.0)
     offset: Annotated[Vector, Parameter("from the centre to the plane", unit="m")] = (0.0, 0.0, 0.0)

@@ -15,7 +15,9 @@ class ScalarFlux(Section):
     """A flux of a scalar through a surface."""
 
     geom_object: Annotated[
-        Any, SectionOf("ups.grammar.ice_material:PlainRegion"), Parameter("shape whose surface it flows through")
+        Any,
+        SectionOf("ups.grammar.ice_material:PlainRegion"),
+        Parameter("shape whose surface it flows through"),
     ]
     outward_normal: Annotated[bool, Parameter("along the normal out of the body")] = False
     auto_cycle: Annotated[bool, Parameter("turn the flux at limits of the concentration")] = False

@@ -48,7 +48,9 @@ class MovedTag(OldForm):
             erosion = options.get("erosion")
             if erosion is None:
                 continue
-            materials = [m for m in root.find_all("MaterialProperties/MPM/material") if m.get("erosion") is None]
+            materials = [
+                m for m in root.find_all("MaterialProperties/MPM/material") if m.get("erosion") is None
+            ]
             text = erosion.source.text[erosion.start : erosion.end]
             edits = [m.source.edit(m.open_end, m.open_end, f"\n{_indent(m)}  {text}") for m in materials]
             same_file = all(m.source is erosion.source for m in materials)

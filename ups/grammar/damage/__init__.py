@@ -1,1 +1,0 @@
-"""Damage models of Uintah that this program does not run; each module is one model."""

@@ -1,0 +1,174 @@
+"""What a run would do, without doing it: materials, particles, cells, first step, memory and size of the archive."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ups.deck import Specification, read_deck
+
+BYTES_A_PARTICLE = 700
+"""Memory that a particle takes: its state and that of its model, at the start and the end of a step."""
+
+BYTES_A_NODE = 250
+"""Memory that a node takes for each material."""
+
+SECONDS_A_PARTICLE_STEP = 3.0e-7
+"""Time that a particle takes in a step on one core, of a common model."""
+
+_UNITS = ("B", "kB", "MB", "GB", "TB")
+
+
+@dataclass(frozen=True)
+class MaterialPlan:
+    """A material of the run."""
+
+    index: int
+    name: str
+    model: str
+    particles: int
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """What a run would do.
+
+    Attributes
+    ----------
+    materials : in the order of their indices.
+    cells : of the grid in each direction.
+    nodes : of the grid, those outside its faces included.
+    first_step : the first time step, in the deck's unit of time.
+    steps : how many steps are foreseen, at the first step's length.
+    outputs : how many times the archive is written.
+    memory, archive : in bytes, roughly.
+    seconds : of computing on one core, roughly.
+    """
+
+    materials: tuple[MaterialPlan, ...]
+    cells: tuple[int, int, int]
+    nodes: int
+    first_step: float
+    steps: int
+    outputs: int
+    memory: int
+    archive: int
+    seconds: float
+
+    @property
+    def particles(self) -> int:
+        """Of all materials."""
+        return sum(material.particles for material in self.materials)
+
+
+def plan_run(path: str | os.PathLike[str]) -> RunPlan:
+    """Look ahead at the run of a deck.
+
+    Raises
+    ------
+    DeckError : the deck cannot be run.
+    """
+    from ups.factory import build, expected_steps
+
+    deck = read_deck(path)
+    specification = deck.require()
+    simulation = build(deck)
+    control = specification.Time
+    stable = float(simulation.initial_time_step())
+    first = control.limit(stable, control.initTime, 0.0, math.inf)
+    steps = expected_steps(specification, first)
+    materials = tuple(
+        MaterialPlan(body.index, section.name, _model_name(section.constitutive_model), len(body.particles))
+        for body, section in zip(
+            simulation.bodies, specification.MaterialProperties.MPM.material, strict=True
+        )
+    )
+    particles = sum(material.particles for material in materials)
+    nodes = math.prod(n + 3 for n in simulation.grid.cells)
+    outputs = _outputs(specification, steps, first)
+    return RunPlan(
+        materials=materials,
+        cells=simulation.grid.cells,
+        nodes=nodes,
+        first_step=first,
+        steps=steps,
+        outputs=outputs,
+        memory=particles * BYTES_A_PARTICLE + nodes * len(materials) * BYTES_A_NODE,
+        archive=outputs * _bytes_an_output(specification, particles, nodes * len(materials)),
+        seconds=particles * steps * SECONDS_A_PARTICLE_STEP,
+    )
+
+
+def _model_name(model: object) -> str:
+    from solver.declare import FAMILIES
+
+    names = FAMILIES["constitutive_model"].models.items()
+    return next((name for name, record in names if isinstance(model, record)), type(model).__name__)
+
+
+def _outputs(specification: Specification, steps: int, step: float) -> int:
+    """How often the archive is written."""
+    section = specification.DataArchiver
+    if section.outputTimestepInterval:
+        return steps // section.outputTimestepInterval
+    if section.outputInterval:
+        return int(steps * step / max(section.outputInterval, step))
+    return 0
+
+
+def _bytes_an_output(specification: Specification, particles: int, nodes: int) -> int:
+    """Size of one output: doubles, with nine components for tensors and three for vectors."""
+    width = 4 if specification.DataArchiver.outputDoubleAsFloat else 8
+    total = 0
+    for save in specification.DataArchiver.save:
+        if save.label.startswith(("p.", "g.")):
+            total += width * _components(save.label) * (particles if save.label.startswith("p.") else nodes)
+    return total
+
+
+def _components(label: str) -> int:
+    if any(word in label for word in ("stress", "deformationMeasure", "velGrad", "size", "scalefactor", "rotation")):
+        return 9
+    vectors = ("p.x", "velocity", "displacement", "force", "acceleration", "Gradient")
+    return 3 if any(word in label for word in vectors) else 1
+
+
+def _lines(plan: RunPlan) -> Iterator[str]:
+    cells = " x ".join(map(str, plan.cells))
+    yield f"grid        {cells} cells, {plan.nodes} nodes"
+    for material in plan.materials:
+        name = f" ({material.name})" if material.name else ""
+        yield f"material {material.index}  {material.model}{name}, {material.particles} particles"
+    yield f"particles   {plan.particles}"
+    yield f"first step  {plan.first_step:.4g}"
+    yield f"steps       about {plan.steps}"
+    yield f"outputs     about {plan.outputs}, {_size(plan.archive)}"
+    yield f"memory      about {_size(plan.memory)}"
+    yield f"computing   about {_duration(plan.seconds)} on one core"
+
+
+def _size(count: float) -> str:
+    """Bytes for reading."""
+    unit = 0
+    while count >= 1000.0 and unit < len(_UNITS) - 1:
+        count, unit = count / 1000.0, unit + 1
+    return f"{count:.3g} {_UNITS[unit]}"
+
+
+def _duration(seconds: float) -> str:
+    for length, name in ((86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")):
+        if seconds >= 2.0 * length:
+            return f"{seconds / length:.0f} {name}"
+    return f"{max(seconds, 1.0):.0f} seconds"
+
+
+def plan_command(path: str) -> tuple[str, int]:
+    """What ``ups plan DECK`` prints.
+
+    Raises
+    ------
+    DeckError : the deck cannot be run.
+    """
+    return "\n".join(_lines(plan_run(path))), 0
