@@ -208,5 +208,146 @@ def convert(
             click.echo(path)
 
 
+@main.command()
+@click.argument("archive", type=click.Path())
+@click.option("--step", type=int, default=-1, metavar="STEP", help="Ranges at this step; -1 is the last.")
+@click.option("--json", "as_json", is_flag=True, help="Everything, with each component's range, as JSON.")
+def info(archive: str, step: int, as_json: bool) -> None:
+    """Show what ARCHIVE holds: steps, grid, variables and their ranges, histories, size, health."""
+    with _orderly():
+        from ups.inspect.info import render, summarize
+
+        summary = summarize(archive, step)
+        if as_json:
+            import json
+
+            click.echo(json.dumps(summary.as_dict(), indent=2))
+        else:
+            click.echo(render(summary))
+
+
+@main.command()
+@click.argument("archive", type=click.Path())
+@click.option("--repair", is_flag=True, help="Make it readable up to its last whole step.")
+@click.option("--quick", is_flag=True, help="Look at tables and sizes of files only, not at every block.")
+def check(archive: str, repair: bool, quick: bool) -> None:
+    """Look for what is missing, cut off or damaged in ARCHIVE; exit status 1 where anything is."""
+    with _orderly():
+        from ups.inspect.check import check_archive, repair_archive
+
+        for action in repair_archive(archive) if repair else []:
+            click.echo(action)
+        health = check_archive(archive, values=not quick)
+        for problem in health.problems:
+            click.echo(str(problem))
+        click.echo(f"{len(health.whole)} whole time steps, {len(health.damaged)} damaged")
+        sys.exit(0 if health.is_sound else FAULT)
+
+
+class _ExitsWithOne(click.Command):
+    """A command whose wrong use leaves with 1, as 2 says something else."""
+
+    def make_context(self, *args: Any, **options: Any) -> click.Context:
+        try:
+            return super().make_context(*args, **options)
+        except click.UsageError as problem:
+            problem.show()
+            raise click.exceptions.Exit(FAULT) from None
+
+
+@main.command(cls=_ExitsWithOne)
+@click.argument("first", type=click.Path())
+@click.argument("second", type=click.Path())
+@click.option("--abs-tolerance", type=click.FloatRange(min=0), default=1e-9, show_default=True)
+@click.option("--rel-tolerance", type=click.FloatRange(min=0), default=1e-6, show_default=True)
+@click.option("--exact", is_flag=True, help="Both tolerances zero.")
+@click.option("--variable", "variables", multiple=True, metavar="LABEL", help="Only these variables.")
+@click.option("--ignore", multiple=True, metavar="LABEL", help="Not these variables.")
+@click.option("--levels", type=int, nargs=2, metavar="I J", help="Only these levels of FIRST and SECOND.")
+@click.option("--extra-cells", is_flag=True, help="Compare extra cells, too.")
+def compare(
+    first: str,
+    second: str,
+    abs_tolerance: float,
+    rel_tolerance: float,
+    exact: bool,
+    variables: tuple[str, ...],
+    ignore: tuple[str, ...],
+    levels: tuple[int, int] | None,
+    extra_cells: bool,
+) -> None:
+    """Compare the archives FIRST and SECOND as Uintah's compare_uda does.
+
+    A number differs where both tolerances are exceeded. Exit status: 0 equal, 2 tolerances exceeded,
+    5 not comparable, 1 wrong arguments.
+    """
+    with _orderly():
+        from ups.inspect.compare import Tolerances, compare_archives, render
+
+        tolerances = Tolerances(0.0, 0.0) if exact else Tolerances(abs_tolerance, rel_tolerance)
+        outcome = compare_archives(
+            first,
+            second,
+            tolerances,
+            variables=variables,
+            ignore=ignore,
+            levels=levels,
+            extra_cells=extra_cells,
+        )
+        click.echo(render(outcome))
+        sys.exit(outcome.status)
+
+
+@main.command()
+@click.argument("archive", type=click.Path())
+@click.argument("variables", nargs=-1, required=True)
+@click.option("--point", type=float, nargs=3, metavar="X Y Z", help="At a point.")
+@click.option("--line", type=float, nargs=6, metavar="X Y Z X Y Z", help="Along the line between two points.")
+@click.option("--particle", type=int, metavar="ID", help="Of the particle of this p.particleID.")
+@click.option("--points", type=click.IntRange(min=2), metavar="N", help="Points on the line; one a cell.")
+@click.option("--material", type=int, metavar="INDEX", help="Material; 0, or that of the particle.")
+@click.option("--level", type=int, metavar="INDEX", help="Level; the finest that holds the place.")
+@click.option("--step", "steps", multiple=True, type=int, metavar="STEP", help="Only these; -1 is the last.")
+@click.option("-o", "--output", type=click.Path(), help="The .csv to write; by default the terminal.")
+def extract(
+    archive: str,
+    variables: tuple[str, ...],
+    point: tuple[float, float, float] | None,
+    line: tuple[float, ...] | None,
+    particle: int | None,
+    points: int | None,
+    material: int | None,
+    level: int | None,
+    steps: tuple[int, ...],
+    output: str | None,
+) -> None:
+    """Write values of VARIABLES of ARCHIVE over time as a table: at a point, on a line, of a particle.
+
+    A variable may carry a measure: stress:vonMises, velocity:magnitude, g.stressFS:XY.
+    """
+    if [point, line, particle].count(None) != 2:
+        raise click.UsageError("give one of --point, --line and --particle")
+    with _orderly():
+        from ups.archive import Archive
+        from ups.inspect.extract import extract as extract_table
+
+        ends = None if line is None else ((line[0], line[1], line[2]), (line[3], line[4], line[5]))
+        table = extract_table(
+            Archive(archive),
+            variables,
+            point=point,
+            line=ends,
+            particle=particle,
+            count=points,
+            material=material,
+            level=level,
+            steps=steps or None,
+        )
+        if output is None:
+            table.write(sys.stdout)
+        else:
+            table.save(output)
+
+
 if __name__ == "__main__":
     main()

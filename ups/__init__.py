@@ -5,6 +5,7 @@
 >>> result = deck.run(output="disks.uda")           # doctest: +SKIP
 >>> result["p.stress"][-1]                          # doctest: +SKIP
 >>> times, energy = result.history("KineticEnergy") # doctest: +SKIP
+>>> ups.open("disks.uda").particles(-1, "p.stress:vonMises").max()  # doctest: +SKIP
 
 Everything is imported when it is first used, so that ``import ups`` costs next to nothing.
 """
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ups.archive import Archive, ArchiveError
+    from ups.archive import Archive as open  # noqa: N813 - ups.open is a function to its users
     from ups.deck import Deck
     from ups.deck import read_deck as read
     from ups.diagnostics import DeckError
@@ -28,6 +30,7 @@ _HOMES = {
     "Deck": ("ups.deck", "Deck"),
     "DeckError": ("ups.diagnostics", "DeckError"),
     "Result": ("ups.result", "Result"),
+    "open": ("ups.archive", "Archive"),
     "read": ("ups.deck", "read_deck"),
     "resume": ("ups.session", "resume_run"),
 }
@@ -38,6 +41,7 @@ __all__ = [
     "Deck",
     "DeckError",
     "Result",
+    "open",
     "read",
     "resume",
 ]

@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 from solver.creation import GeometryObject
 from solver.declare import FAMILIES, IntVector, Parameter, SubModel, Vector, one_of
 from solver.flags import Flags
+from solver.materials.damage import for_constitutive_model
 from solver.time_control import TimeControl
 from ups.diagnostics import DeckError, Diagnostics, Fix, did_you_mean
 from ups.document import Attribute, Document, Text, read_document
 from ups.grammar.components import COMPONENTS
 from ups.reader import Opaque, Reader
+from ups.rules.old_forms import modernise
 
 if TYPE_CHECKING:
     from ups.result import Result
@@ -223,6 +225,15 @@ class MaterialSection:
     erosion: Annotated[Any, SubModel("erosion")] = None
     name: Annotated[str, Parameter("name of the material", attribute=True)] = ""
 
+    def faults(self) -> list[tuple[str, str]]:
+        """Models that make no sense together, each with why."""
+        damage = self.damage_model or getattr(self.constitutive_model, "damage_model", None)
+        try:
+            for_constitutive_model(damage, self.constitutive_model)
+        except ValueError as problem:
+            return [("damage_model", str(problem))]
+        return []
+
 
 @dataclass(frozen=True)
 class MPMMaterials:
@@ -296,7 +307,7 @@ class Deck:
     def require(self) -> Specification:
         """The values of the deck; raises DeckError where it has errors or asks for what is not supported."""
         for what, at in self.reader.unsupported:
-            self.diagnostics.error("UPS412", f"{what}: known, not supported by this program", at)
+            self.diagnostics.error("UPS412", f"{what}: this program does not run it", at)
         if self.specification is None or self.diagnostics.has_errors:
             raise DeckError(self.diagnostics, self.sources)
         return self.specification
@@ -321,8 +332,6 @@ def read_deck(
     document = read_document(path, text=text)
     diagnostics = Diagnostics(document.diagnostics)
     folder = Path(path).parent
-    from ups.rules.old_forms import modernise
-
     reader = Reader(diagnostics, lambda name: find_data_file(name, folder), document.complete)
     specification = None
     if document.root is not None:
@@ -336,6 +345,7 @@ def read_deck(
         elif component is not None:
             at = document.root.get("SimulationComponent") or document.root
             reader.say_unsupported(f"{name}: {component.meaning}", at)
+            reader.runs = False
             if component.record is not None:
                 reader.read(component.load(), document.root)
     return Deck(Path(path), document, specification, diagnostics, reader)

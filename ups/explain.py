@@ -42,7 +42,7 @@ def suggestion(name: str) -> str | None:
 
 def all_codes() -> dict[str, str]:
     """Every code with its title, those of rules included."""
-    from ups.rules import all_rules
+    from ups.rules.rule import all_rules
 
     all_rules()
     _old_forms()
@@ -51,8 +51,8 @@ def all_codes() -> dict[str, str]:
 
 def explain_code(code: str) -> str:
     """The page of a code."""
-    from ups.rules import all_rules
     from ups.rules.form_pages import PAGES
+    from ups.rules.rule import all_rules
 
     pages = [PAGES[code]] if code in PAGES else []
     pages += [
@@ -94,14 +94,15 @@ def _model_lines(name: str, meaning: str, record: type, runs: bool) -> Iterator[
 def _tags(name: str) -> Iterator[str]:
     parent, _, tag = name.rpartition("/")
     parent = parent.rpartition("/")[2]
-    found = [p for p in places() if tag in (p.tag, *p.info.parameter.old_tags)]
+    found = [p for p in places() if tag in (p.tag, *p.info.parameter.old_tags, *_old_tags(p.info))]
     found = [p for p in found if not parent or p.parent == parent]
     groups: dict[str, list[Place]] = {}
     for place in found:
         groups.setdefault(describe(place.info), []).append(place)
     for text, places_of in groups.items():
         kind = "attribute" if places_of[0].info.parameter.attribute else "tag"
-        shown = f"<{tag}>" if kind == "tag" else tag
+        today = places_of[0].tag
+        shown = f"<{today}>" if kind == "tag" else today
         where = list(dict.fromkeys(_where(p) for p in places_of))
         more = f" and {len(where) - _MOST_PLACES} more" if len(where) > _MOST_PLACES else ""
         unsupported = "" if any(p.runs for p in places_of) else " (known, not supported by ups run)"
@@ -121,9 +122,15 @@ def describe(info: FieldInfo) -> str:
     parts += [f"one of {', '.join(c for c in parameter.choices if c)}"] if parameter.choices else []
     parts.append("required" if info.required else _default(info))
     parts += [f"no effect: {parameter.ignored}"] if parameter.ignored else []
-    parts += [f"once called {', '.join(parameter.old_tags)}"] if parameter.old_tags else []
+    old = (*parameter.old_tags, *_old_tags(info))
+    parts += [f"once called {', '.join(old)}"] if old else []
     parts += [f"source: {parameter.source}"] if parameter.source else []
     return "; ".join(part for part in parts if part)
+
+
+def _old_tags(info: FieldInfo) -> tuple[str, ...]:
+    """Tags by which earlier versions of Uintah chose a model."""
+    return FAMILIES[info.sub_model.family].old_tags if info.sub_model is not None else ()
 
 
 def _type_of(info: FieldInfo) -> str:

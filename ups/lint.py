@@ -44,7 +44,7 @@ def lint_deck(path: str | os.PathLike[str], text: str | None = None) -> Deck:
     """
     deck = read_deck(path, text=text)
     if deck.document.root is not None:
-        from ups.rules import DeckView, all_rules
+        from ups.rules.rule import DeckView, all_rules
 
         view = DeckView(deck, component_of(deck.document.root))
         for rule in all_rules():

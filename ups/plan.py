@@ -41,7 +41,7 @@ class RunPlan:
     cells : of the grid in each direction.
     nodes : of the grid, those outside its faces included.
     first_step : the first time step, in the deck's unit of time.
-    steps : how many steps are foreseen, at the first step's length.
+    steps : how many steps are foreseen, at the length that stability asks for at the start.
     outputs : how many times the archive is written.
     memory, archive : in bytes, roughly.
     seconds : of computing on one core, roughly.
@@ -78,7 +78,8 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     control = specification.Time
     stable = float(simulation.initial_time_step())
     first = control.limit(stable, control.initTime, 0.0, math.inf)
-    steps = expected_steps(specification, first)
+    usual = min(max(stable * control.timestep_multiplier, control.delt_min), control.delt_max)
+    steps = expected_steps(specification, usual)
     materials = tuple(
         MaterialPlan(body.index, section.name, _model_name(section.constitutive_model), len(body.particles))
         for body, section in zip(
@@ -87,7 +88,7 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     )
     particles = sum(material.particles for material in materials)
     nodes = math.prod(n + 3 for n in simulation.grid.cells)
-    outputs = _outputs(specification, steps, first)
+    outputs = _outputs(specification, steps, usual)
     return RunPlan(
         materials=materials,
         cells=simulation.grid.cells,
@@ -129,7 +130,10 @@ def _bytes_an_output(specification: Specification, particles: int, nodes: int) -
 
 
 def _components(label: str) -> int:
-    if any(word in label for word in ("stress", "deformationMeasure", "velGrad", "size", "scalefactor", "rotation")):
+    if any(
+        word in label
+        for word in ("stress", "deformationMeasure", "velGrad", "size", "scalefactor", "rotation")
+    ):
         return 9
     vectors = ("p.x", "velocity", "displacement", "force", "acceleration", "Gradient")
     return 3 if any(word in label for word in vectors) else 1

@@ -53,6 +53,7 @@ class Reader(ValueReader):
     Attributes
     ----------
     unsupported : what the deck asks for that this program knows and does not run, with its place.
+    runs : whether the deck's method is one that this program runs, so that it can tell what has no effect.
     """
 
     def __init__(
@@ -62,6 +63,7 @@ class Reader(ValueReader):
         self.open_file = open_file
         self.complete = complete
         self.unsupported: list[tuple[str, Located]] = []
+        self.runs = True
         self._named_pieces: Any = None
         self._places: dict[int, tuple[Any, Element]] = {}
         self._records: dict[int, Any] = {}
@@ -177,7 +179,7 @@ class Reader(ValueReader):
     def _say_effect(self, info: FieldInfo, value: Any, child: Element) -> None:
         """Note what has no effect, or is not supported, unless it says what holds anyway."""
         parameter = info.parameter
-        if parameter.ignored:
+        if parameter.ignored and self.runs:
             self.diagnostics.note("UPS304", f"<{child.tag}> has no effect: {parameter.ignored}", child)
         elif parameter.unsupported and value is not FAILED and value != info.default:
             self.say_unsupported(f"<{child.tag}> ({parameter.meaning}) needs {parameter.unsupported}", child)

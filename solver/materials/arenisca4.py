@@ -48,6 +48,9 @@ TURNS_TAKEN_BACK = 2
 TURN = 0.7116445185561306
 """Angle about the line to the trial stress from one direction to the next, that of Uintah's table."""
 
+EQUAL = 1.0e-10
+"""Principal stresses that differ by this part of their size are one, without axes of their own."""
+
 TILTS = 0.5 * math.pi * 2.0 ** (-0.25 * np.arange(TURNS))
 ALONG = np.cos(TILTS)
 ACROSS_X = np.sin(TILTS) * np.cos(TURN * np.arange(TURNS))
@@ -256,7 +259,8 @@ def return_among_principal_stresses(
     """The closest point; the principal axes stay.
 
     Where two principal stresses are equal they stay so and take the middle one of the point that was found,
-    where all are, the highest, as in Uintah.
+    where all are, the highest, as in Uintah. Where they differ by rounding Uintah divides by the difference,
+    and its stress may be far from the yield surface; here such stresses count as equal.
     """
     stretch = deviator_stretch(model, stiffness)
     star = spectrum(isotropic(stress.i1 / 3.0) + stretch * stress.deviator)
@@ -277,11 +281,12 @@ def return_among_principal_stresses(
                 break
             n += 1
     low, middle, high = point.low, point.middle, point.high
-    if star.first == star.third:
+    alike = EQUAL * size(target)
+    if target.high - target.low <= alike:
         low, middle = high, high
-    elif star.second == star.first:
+    elif target.high - target.middle <= alike:
         high = middle
-    elif star.second == star.third:
+    elif target.middle - target.low <= alike:
         low = middle
     found = compose(high, middle, low, star.axes)
     i1 = trace(found)

@@ -24,6 +24,7 @@ from solver.materials.constitutive import (
 from solver.materials.damage.no_damage import NoDamage
 from solver.materials.deviatoric_stress import relax, stress_increment
 from solver.materials.deviatoric_stress.hypo_elastic import HypoElasticDeviator
+from solver.materials.deviatoric_stress.hypo_visco_elastic import HypoViscoElasticDeviator
 from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
 from solver.materials.equation_of_state import isentropic_heating, mean_stress
@@ -165,6 +166,8 @@ class ElasticPlastic(NamedTuple):
     ] = True
     failure_is_checked: bool = False
     """Whether the material has an erosion algorithm, without which particles do not fail."""
+    adds_to_stress = True
+    """The deviator of a step is added to that of the step before."""
 
     @property
     def State(self) -> type:  # noqa: N802 - the class attribute of other models
@@ -173,10 +176,17 @@ class ElasticPlastic(NamedTuple):
 
     def faults(self) -> list[tuple[str, str]]:
         """Fields that do not go together, each with what is wrong."""
+        found = []
         porous = isinstance(self.yield_condition, Gurson | Rousselier)
         if porous and isinstance(self.plastic_convergence_algo, RadialReturn):
-            return [("plastic_convergence_algo", "a yield condition with porosity needs biswajit")]
-        return []
+            found.append(("plastic_convergence_algo", "a yield condition with porosity needs biswajit"))
+        viscous = isinstance(self.deviatoric_stress_model, HypoViscoElasticDeviator)
+        if viscous and not isinstance(self.shear_modulus_model, ConstantShear):
+            message = "the elements of hypoViscoElastic have their own, constant moduli: use constant_shear"
+            found.append(("shear_modulus_model", message))
+        if self.check_max_stress_failure and math.isinf(self.critical_stress):
+            found.append(("critical_stress", "check_max_stress_failure needs critical_stress"))
+        return found
 
 
 @cache
@@ -255,7 +265,7 @@ def elastic_plastic_stress(
     if not (0.0 < J <= LARGEST_EXPANSION):
         # As in Uintah, a particle that is given up still holds back the next step by waves in what it became.
         modulus = model.bulk_modulus + 4.0 * model.shear_modulus / 3.0
-        c = math.sqrt(modulus * max(0.0, J) / material.density)
+        c = math.sqrt(modulus * J / material.density) if 0.0 < J < math.inf else 0.0
         return StressUpdate(isotropic(0.0), c, 0.0, 0.0, 0.0, DELETE)
     motion = kinematics(point, tensor_at(state.rotation, p), material.density / J)
     old_stress = to_material(motion.old_rotation, point.stress)

@@ -40,6 +40,15 @@ def plastic_strain_rate(model: Any, state: Any, p: int) -> float:
     return 0.0
 
 
+def check_flows(damage: str, constitutive_model: Any) -> None:
+    """Raise ValueError where a damage model that grows with plastic strain meets a model without any."""
+    if type(constitutive_model) not in plastic_strain_rate.implementations:  # type: ignore[attr-defined]  # by generic
+        raise ValueError(
+            f"damage model {damage} grows with plastic strain, and this material reports none: "
+            "use it with elastic_plastic"
+        )
+
+
 @inline
 def restrained(failure: Failure, point: Point) -> Point:
     """The particle with the motion that its erosion algorithm leaves it, where it failed before the step."""

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+
 from solver.declare import FAMILIES
 from ups.deck import Flags
 
@@ -56,6 +57,18 @@ def test_the_python_of_the_first_deck_works(folder: Path) -> None:
     text = block_after("or from Python")
     outcome = run(folder, "-c", text + "\nprint(stress.shape, len(times) == len(energy))")
     assert outcome.stdout.split("\n")[-2] == "(416, 3, 3) True", outcome.stdout + outcome.stderr
+
+
+def test_mistakes_are_told_as_the_readme_shows(folder: Path) -> None:
+    text = (folder / "inputs" / "MPM" / "thickCylinderMPM.ups").read_text()
+    text = re.sub(r"<density> *7830.0 </density>", "<densty> 7830.0 </densty>", text)
+    text = text.replace('"vonMises"', '"vonmises"').replace("<Gamma_0> 1.69", "<Gamma_0> -1.69")
+    (folder / "ring.ups").write_text(text)
+    outcome = run(folder, str(ROOT / "cli.py"), "lint", "ring.ups")
+    command, shown = block_after("## Mistakes").split("\n", 1)
+    assert command == "$ ups lint ring.ups"
+    assert outcome.returncode == 1
+    assert outcome.stdout.strip() == shown.strip()
 
 
 def test_the_models_that_the_readme_names_exist() -> None:

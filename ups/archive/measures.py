@@ -235,7 +235,8 @@ def find(name: str, known: Mapping[str, Variable]) -> Named:
         label, colon, measure = SHORTHANDS[name].partition(":")
         source = known.get(label)
     if source is None:
-        raise LookupError(f"there is no variable {label}")
+        reason = f", of which {name} is a measure" if name in SHORTHANDS else ""
+        raise LookupError(f"there is no variable {label}{reason}")
     return Named(source, measure_of(source, measure) if colon else None)
 
 

@@ -13,12 +13,14 @@ of copied. Archives of any age, byte order, compression and number of ranks and 
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 from lxml import etree
 
 from ups.archive.errors import ArchiveError
@@ -32,7 +34,10 @@ from ups.archive.units import plain_name
 from ups.archive.variables import GLOBAL_MATERIAL, PER_PATCH, Variable
 from ups.diagnostics import did_you_mean
 
-_STEPS_KEPT = 4
+if TYPE_CHECKING:
+    from ups.archive.tracks import Track
+
+_STEPS_KEPT = 16
 """Time steps whose tables are kept in memory."""
 
 
@@ -171,6 +176,19 @@ class Archive:
         """Levels and patches at a time step."""
         return self._step(step).file.grid
 
+    def problems(self, step: int, *, values: bool = False) -> list[ArchiveError]:
+        """Everything that is wrong with a time step: missing or cut off files, tables and blocks.
+
+        Parameters
+        ----------
+        step
+            Number of the time step.
+        values
+            Whether to read every block, which also finds damage inside compressed ones; else only the
+            tables and the sizes of the files are looked at.
+        """
+        return list(self._step(step).problems(values=values))
+
     def sections(self, step: int) -> tuple[etree._Element, ...]:
         """XML elements that components left in ``timestep.xml``."""
         return self._step(step).file.sections
@@ -273,6 +291,54 @@ class Archive:
         for box, part in found:
             values[box.within(whole.low)] = part
         return GridField(values, whole, lattice, variable)
+
+    def follow(
+        self,
+        label: str,
+        identities: npt.ArrayLike,
+        material: int | None = None,
+        steps: Sequence[int] | None = None,
+    ) -> Track:
+        """Follow particles through the time steps by their ``p.particleID``.
+
+        Parameters
+        ----------
+        label
+            Label of a particle variable, perhaps with a measure.
+        identities
+            Identities of the particles, shape (n,).
+        material
+            Their material, or None to look through all.
+        steps
+            Numbers of the time steps; None for all that hold the variable.
+        """
+        from ups.archive.tracks import follow
+
+        return follow(self, label, identities, material, steps)
+
+    def dataset(self, variables: Sequence[str] | None = None, material: int = 0, level: int = 0) -> Any:
+        """Return an `xarray.Dataset` of one material and level, whose values are read when they are used.
+
+        Grid variables have the dimensions (time, x, y, z, component...); those at nodes, cell centres
+        and faces have coordinates of their own (``x_node``, ``x_cell``, ``x_face``). Particle variables,
+        (time, particle, component...), are there where ``p.particleID`` is stored, and hold the particles
+        of the first time step. A history has a dimension of its own, ``time_KineticEnergy``.
+
+        Parameters
+        ----------
+        variables
+            Labels, perhaps with measures; None for all that the material has.
+        material, level
+            Their indices.
+
+        Raises
+        ------
+        ArchiveError
+            Where xarray is not installed.
+        """
+        from ups.archive.dataset import dataset
+
+        return dataset(self, variables, material, level)
 
     def per_patch(self, step: int, label: str, material: int, level: int = 0) -> np.ndarray:
         """Values of a per-patch variable, shape (patches, element...)."""

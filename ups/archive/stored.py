@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import mmap
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -123,6 +123,71 @@ class StoredTimestep:
             return Variable.from_type(entry.name, entry.type_name, entry.compression)
         except ValueError as error:
             raise ArchiveError(self.path.parent, str(error), advice="choose other variables") from None
+
+    def problems(self, *, values: bool) -> Iterator[ArchiveError]:
+        """Everything that is wrong with the step: files, tables, blocks that are missing or cut off.
+
+        Parameters
+        ----------
+        values
+            Whether to decode every block too, which finds damage inside compressed ones.
+        """
+        try:
+            levels = self.levels
+        except ArchiveError as error:
+            yield error
+            return
+        try:
+            self.global_values()
+        except ArchiveError as error:
+            yield error
+        for level in levels:
+            try:
+                table = self.table(level.index)
+            except ArchiveError as error:
+                yield error
+                continue
+            for label, entries in table.entries.items():
+                yield from self._gaps(level, label, entries, table.particles)
+                for entry in entries.values():
+                    try:
+                        self._check(level.index, entry, values)
+                    except ArchiveError as error:
+                        yield error
+
+    def _gaps(
+        self,
+        level: Level,
+        label: str,
+        entries: Mapping[tuple[int, int], Entry],
+        particles: Mapping[tuple[int, int], int],
+    ) -> Iterator[ArchiveError]:
+        """Blocks of a variable that must be there and are not; old archives omit those without particles."""
+        on_particles = next(iter(entries.values())).type_name.startswith(PARTICLE)
+        for material in sorted({material for material, _patch in entries}):
+            lacking = [
+                patch.id
+                for patch in level.patches
+                if (material, patch.id) not in entries
+                and (not on_particles or particles.get((material, patch.id), 0) > 0)
+            ]
+            if lacking:
+                message = f"{label} of material {material} is missing on the patches {lacking[:5]}"
+                yield ArchiveError(self.path, message, advice=_CUT_OFF)
+
+    def _check(self, level: int, entry: Entry, values: bool) -> None:
+        """Raise where a block is not whole; one of an unknown type is only looked for in its file."""
+        if ELEMENTS.get(entry.type_name.partition("<")[2].rstrip("> ")) is None:
+            self._stored(self._folder(level) / entry.filename, entry, entry.name)
+        elif values or not entry.compression:
+            if self.variable(entry).is_particle:
+                self.particle_block(level, entry)
+            elif self.variable(entry).is_grid:
+                self.grid_block(level, entry)
+            else:
+                self.patch_block(level, entry)
+        else:
+            self._stored(self._folder(level) / entry.filename, entry, entry.name)
 
     def particle_block(self, level: int, entry: Entry) -> np.ndarray:
         """Values of the particles of a block, shape (n, element...)."""

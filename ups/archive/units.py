@@ -43,7 +43,7 @@ _PLAIN = {
     "TotalMass": "kg",
     "TotalMomentum": "kg m/s",
     "TotalVolumeDeformed": "m^3",
-    "CenterOfMassPosition": "m",
+    "CenterOfMassPosition": "kg m",  # the sum of mass times position, in spite of its name
     "RigidReactionForce": "N",
     "RigidReactionTorque": "N m",
     "SumTransmittedForce": "N",

@@ -23,7 +23,7 @@ from ups.convert.selection import Selection, as_rows
 _TABLES = {NODE: "nodes", CELL: "cells", FACES[0]: "xfaces", FACES[1]: "yfaces", FACES[2]: "zfaces"}
 
 
-class _Table:
+class TableFile:
     """A table that grows by blocks of rows under one heading."""
 
     def __init__(self, file: IO[str], heading: Sequence[str]) -> None:
@@ -37,14 +37,14 @@ class _Table:
         self._file.writelines(map(form.__mod__, rows))
 
 
-def _headings(variable: Variable) -> list[str]:
+def headings(variable: Variable) -> list[str]:
     """Names of the columns of a variable: the label, with its components where there are several."""
     element = variable.element_type
     names: Iterable[str] = element.component_names or map(str, range(element.components))
     return [f"{variable.name}.{name}" for name in names] if element.shape else [variable.name]
 
 
-def _columns(values: np.ndarray) -> list[np.ndarray]:
+def components_of(values: np.ndarray) -> list[np.ndarray]:
     """Components of values of shape (n, element...), each of shape (n,)."""
     return list(as_rows(values).T)
 
@@ -55,10 +55,10 @@ def _particle_columns(
     particles = selection.particles(step)
     material, found = particles.material_indices, dict(particles.values())
     count = len(material)
-    columns = [np.full(count, step), np.full(count, time), material, *_columns(particles.positions)]
+    columns = [np.full(count, step), np.full(count, time), material, *components_of(particles.positions)]
     for variable in named:
         absent = np.full((count, *variable.element_type.shape), np.nan)
-        columns += _columns(found.get(variable, absent))
+        columns += components_of(found.get(variable, absent))
     return columns
 
 
@@ -80,7 +80,7 @@ def _grid_columns(
     for variable in named:
         outer = (count, *variable.element_type.shape)
         values = fields[variable].values.reshape(outer) if variable in fields else np.full(outer, np.nan)
-        columns += _columns(values)
+        columns += components_of(values)
     return columns
 
 
@@ -95,14 +95,14 @@ def write(selection: Selection, out: Path, progress: Progress) -> list[Path]:
         raise ArchiveError(selection.archive.path, "there is no particle or grid variable to convert")
     out.parent.mkdir(parents=True, exist_ok=True)
     with ExitStack() as stack:
-        tables: dict[str, _Table] = {}
+        tables: dict[str, TableFile] = {}
         for kind, path in paths.items():
             named = on_grid.get(kind, on_particles)
             head = ["step", "time", "material", "x", "y", "z"]
             if kind in on_grid:
                 head = ["step", "time", "level", "material", "i", "j", "k", "x", "y", "z"]
             file = stack.enter_context(path.open("w", encoding="utf-8", newline=""))
-            tables[kind] = _Table(file, head + [name for variable in named for name in _headings(variable)])
+            tables[kind] = TableFile(file, head + [name for variable in named for name in headings(variable)])
         for done, timestep in enumerate(selection.timesteps, 1):
             _write_step(selection, timestep.step, timestep.time, tables, on_particles, on_grid)
             progress(done, len(selection.timesteps))
@@ -113,7 +113,7 @@ def _write_step(
     selection: Selection,
     step: int,
     time: float,
-    tables: dict[str, _Table],
+    tables: dict[str, TableFile],
     on_particles: Sequence[Variable],
     on_grid: dict[str, list[Variable]],
 ) -> None:

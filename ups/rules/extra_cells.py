@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from ups.diagnostics import Diagnostic, Fix
@@ -59,4 +60,6 @@ def _cells(level: Element | None, box: Element, tag: str) -> list[int] | None:
     if child is None:
         return [0, 0, 0]
     found = numbers(child.text)
-    return [int(n) for n in found] if found is not None and len(found) == 3 else None
+    if found is None or len(found) != 3 or not all(map(math.isfinite, found)):
+        return None
+    return [int(n) for n in found]

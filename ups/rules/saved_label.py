@@ -22,6 +22,7 @@ _ALWAYS = """
 """
 """What every deck of the method can save."""
 
+_WITH_GASES = ("mpmice", "rmpmice", "rigidmpmice")
 _WITH_STATE = ("constitutive_model", "damage_model", "erosion")
 
 
@@ -71,7 +72,7 @@ class SavedLabel(Rule):
 
 def _must_be_provided(name: str, deck: DeckView) -> bool:
     """Whether a label that nothing of the method computes cannot come from elsewhere either."""
-    if deck.switch("MPM/coupled_flow_analysis") or deck.component not in ("mpm", "mpmice"):
+    if deck.switch("MPM/coupled_flow_analysis") or deck.component not in ("mpm", *_WITH_GASES):
         return False
     if not name.startswith("p."):
         return deck.component == "mpm"

@@ -85,7 +85,10 @@ def drained_moduli(model: Any, stress_trace: float, volume_strain: float) -> Mod
 
 @inline
 def saturated_bulk_modulus(model: Any, pores: Pores, volume_strain: float) -> float:
-    """Gassmann's bulk modulus (1951) of a skeleton whose pores hold fluid under pressure."""
+    """Gassmann's bulk modulus (1951) of a skeleton whose pores hold fluid under pressure.
+
+    As in Uintah the compliance phi / K_m is taken off twice (Gassmann takes it off once), which is stiffer.
+    """
     matrix, fluid = pores.matrix_bulk_modulus, pores.fluid_bulk_modulus
     skeleton = model.B0 - compaction_softening(model, volume_strain)
     open_part = math.exp(volume_strain * matrix / pores.mixture) * pores.porosity

@@ -63,7 +63,10 @@ def update_damage(
 
 @singledispatch
 def for_constitutive_model(model: Any, constitutive_model: Any) -> Any:
-    """The damage model with what it takes from the constitutive model of its material."""
+    """The damage model with what it takes from the constitutive model of its material.
+
+    Raises ValueError, with the reason, where the two make no sense together.
+    """
     return model
 
 

@@ -73,7 +73,15 @@ class BrittleDamage(NamedTuple):
 
 @for_constitutive_model.register
 def _(model: BrittleDamage, constitutive_model: Any) -> BrittleDamage:
-    K, G = constitutive_model.bulk_modulus, constitutive_model.shear_modulus
+    K, G = (getattr(constitutive_model, name, None) for name in ("bulk_modulus", "shear_modulus"))
+    if K is None or G is None:
+        raise ValueError("damage model Brittle needs a material with <bulk_modulus> and <shear_modulus>")
+    if getattr(constitutive_model, "adds_to_stress", False):
+        # the scaled stress is where the next step starts from, so that each step would scale it once more
+        raise ValueError(
+            "damage model Brittle scales the stress, which this material adds to in every step: "
+            "use it with a material whose stress follows from its deformation, such as comp_neo_hook"
+        )
     return model._replace(youngs_modulus=9.0 * K * G / (3.0 * K + G))
 
 

@@ -14,11 +14,13 @@ from solver.materials.damage import (
     DamagePoint,
     DamageUpdate,
     ScalarDamage,
+    for_constitutive_model,
     initialize_damage,
     update_damage,
 )
 from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
+from solver.materials.failure import check_flows
 from solver.particles import Particles
 from solver.tensor import deviator, norm, trace
 
@@ -50,6 +52,12 @@ class HancockMacKenzieDamage(NamedTuple):
     def State(self) -> type:  # noqa: N802 - the class attribute of other models
         """The arrays of a particle set."""
         return ScalarDamage
+
+
+@for_constitutive_model.register
+def _(model: HancockMacKenzieDamage, constitutive_model: Any) -> HancockMacKenzieDamage:
+    check_flows("hancock_mackenzie", constitutive_model)
+    return model
 
 
 @initialize_damage.register

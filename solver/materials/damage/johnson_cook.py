@@ -14,11 +14,13 @@ from solver.materials.damage import (
     DamagePoint,
     DamageUpdate,
     ScalarDamage,
+    for_constitutive_model,
     initialize_damage,
     update_damage,
 )
 from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
+from solver.materials.failure import check_flows
 from solver.particles import Particles
 from solver.tensor import Tensor, deviator, norm, trace
 
@@ -55,6 +57,12 @@ class JohnsonCookDamage(NamedTuple):
     def State(self) -> type:  # noqa: N802 - the class attribute of other models
         """The arrays of a particle set."""
         return ScalarDamage
+
+
+@for_constitutive_model.register
+def _(model: JohnsonCookDamage, constitutive_model: Any) -> JohnsonCookDamage:
+    check_flows("johnson_cook", constitutive_model)
+    return model
 
 
 @initialize_damage.register

@@ -30,6 +30,12 @@ class JohnsonCook(NamedTuple):
     T_r: Annotated[float, Parameter("reference temperature", unit="K", ge=0.0)] = 298.0
     T_m: Annotated[float, Parameter("melting temperature", unit="K", gt=0.0)] = 1793.0
 
+    def faults(self) -> list[tuple[str, str]]:
+        """Fields that do not go together, each with what is wrong."""
+        if self.T_m > self.T_r:
+            return []
+        return [("T_m", f"the melting temperature {self.T_m:g} K is not above the reference {self.T_r:g} K")]
+
 
 @inline
 def rate_factor(model: JohnsonCook, strain_rate: float) -> float:

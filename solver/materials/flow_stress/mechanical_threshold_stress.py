@@ -68,6 +68,16 @@ class MechanicalThresholdStress(NamedTuple):
     a_0_c: Annotated[float, Parameter("a_0 above T_c", unit="Pa")] = 7.5159e9
     a_3_c: Annotated[float, Parameter("a_3 above T_c", unit="Pa/K")] = 3.7796e6
 
+    def faults(self) -> list[tuple[str, str]]:
+        """Fields that do not go together, each with what is wrong."""
+        if self.p_i == 0.0:
+            return []
+        return [
+            (name, f"intrinsic barriers (p_i = {self.p_i:g}) need a positive {name}")
+            for name in ("g_0i", "edot_0i", "q_i")
+            if getattr(self, name) == 0.0
+        ]
+
 
 class Phase(NamedTuple):
     """The constants that change at the phase transition."""
