@@ -311,7 +311,8 @@ def _defaults(record: type) -> Iterator[tuple[str, Any]]:
     elif issubclass(record, Section):
         names = {name: None for cls in reversed(record.__mro__) for name in inspect.get_annotations(cls)}
         for name in names:
-            yield name, getattr(record, name, REQUIRED)
+            owner = next(cls for cls in record.__mro__ if name in inspect.get_annotations(cls))
+            yield name, owner.__dict__.get(name, REQUIRED)
     else:
         given = getattr(record, "_field_defaults", {})
         for name in getattr(record, "_fields", ()):

@@ -12,6 +12,7 @@ from ups.element import Attribute, Element, Text
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
 _INTEGER = re.compile(r"[-+]?\d+\Z")
+_MOST_DIGITS = 18
 _SPECIAL = {"inf", "+inf", "-inf", "nan"}
 _SEPARATOR = re.compile(r"[,\s]+")
 
@@ -96,8 +97,11 @@ class ValueReader:
 
     def _integer(self, text: str, at: Place, what: str) -> Any:
         if _INTEGER.match(text):
-            return int(text)
-        if NUMBER.match(text) and math.isfinite(float(text)) and float(text) == int(float(text)):
+            if len(text) <= _MOST_DIGITS:
+                return int(text)
+            self.error("UPS208", f"{what} is {text[:20]}...; no whole number in a deck is that large", at)
+            return FAILED
+        if NUMBER.match(text) and abs(float(text)) < 10.0**_MOST_DIGITS and float(text) == int(float(text)):
             whole = str(int(float(text)))
             fix = Fix((_replaced(at, whole),)) if is_whole(at, text) else None
             message = f"{what} is {text!r}; a whole number is expected"

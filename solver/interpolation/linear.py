@@ -41,17 +41,18 @@ def trilinear(grid: GridIndex, x: float, y: float, z: float, nodes: Any, weights
     row = grid.nodes[0]
     layer = row * grid.nodes[1]
     first = (i - grid.first[0]) + row * (j - grid.first[1]) + layer * (k - grid.first[2])
+    ix, iy, iz = 1.0 / hx, 1.0 / hy, 1.0 / hz
     n = 0
-    for c in range(2):
-        wz, gz = (fz, 1.0 / hz) if c else (1.0 - fz, -1.0 / hz)
+    for a in range(2):
+        wx, gx = (fx, ix) if a else (1.0 - fx, -ix)
         for b in range(2):
-            wy, gy = (fy, 1.0 / hy) if b else (1.0 - fy, -1.0 / hy)
-            for a in range(2):
-                wx, gx = (fx, 1.0 / hx) if a else (1.0 - fx, -1.0 / hx)
+            wy, gy = (fy, iy) if b else (1.0 - fy, -iy)
+            for c in range(2):
+                wz, gz = (fz, iz) if c else (1.0 - fz, -iz)
                 nodes[n] = first + a + row * b + layer * c
                 weights[n] = wx * wy * wz
-                gradients[n, 0] = gx * wy * wz
-                gradients[n, 1] = wx * gy * wz
+                gradients[n, 0] = wy * wz * gx
+                gradients[n, 1] = wx * wz * gy
                 gradients[n, 2] = wx * wy * gz
                 n += 1
     return n

@@ -33,15 +33,16 @@ class UnstableStep(Rule):
         least, end = deck.number("Time/delt_min"), deck.number("Time/maxTime")
         largest = deck.number("Time/delt_max")
         at = deck.find("Time/delt_min")
-        if stable is None or least is None or at is None:
+        if stable is None or least is None or at is None or not stable > 0.0:
             return
         if least > stable:
             message = (
                 f"<delt_min> is {least:g}, and the stable time step about {stable:.2g}: the run is unstable"
             )
             yield self.warning(message, at, f"set it below {stable:.2g}")
-        steps = (end or 0.0) / min(stable, largest or stable)
+        usual = min(stable, largest) if largest is not None and largest > 0.0 else stable
+        steps = (end or 0.0) / usual
         if steps > _MANY_STEPS and not deck.number("Time/max_Timesteps"):
             at_end = deck.find("Time/maxTime")
-            message = f"the run takes about {steps:.1e} steps of {min(stable, largest or stable):.2g}"
+            message = f"the run takes about {steps:.1e} steps of {usual:.2g}"
             yield self.warning(message, at_end or at, "look at the units of time and moduli")
