@@ -349,5 +349,141 @@ def extract(
             table.save(output)
 
 
+@main.command()
+@click.argument("name", default="")
+def materials(name: str) -> None:
+    """List the materials that come with the program, or the files and constants of the material NAME."""
+    with _orderly():
+        from ups.materials import print_catalogue
+
+        print_catalogue(name)
+
+
+MODES = ("uniaxial-stress", "uniaxial-strain", "simple-shear", "hydrostatic")
+
+
+@main.command()
+@click.argument("source", metavar="DECK|MATERIAL")
+@click.option("--material", type=int, default=0, metavar="INDEX", help="Material of the deck.")
+@click.option("--mode", type=click.Choice(MODES), default=MODES[0], show_default=True)
+@click.option("--strain", type=float, default=0.5, show_default=True, help="At the end; negative compresses.")
+@click.option("--strain-rate", type=float, default=1.0, show_default=True, help="In 1/s.")
+@click.option("--temperature", type=float, help="At the start, K; by default the material's room_temp.")
+@click.option("--isothermal", is_flag=True, help="Keep the temperature.")
+@click.option("--steps", type=click.IntRange(min=1), default=1000, show_default=True)
+@click.option("--table", type=click.Path(), help="A file of time and F11 ... F33 in place of a mode.")
+@click.option("--flow", help="Flow model of a catalogue material.")
+@click.option("--eos", help="Its equation of state.")
+@click.option("--shear", help="Its shear modulus model.")
+@click.option("--melting", help="Its melting temperature model.")
+@click.option("--specific-heat", "specific_heat", help="Its specific heat model.")
+@click.option("--csv", "csv_file", type=click.Path(), help="Write all columns there.")
+@click.option("--plot", "picture", type=click.Path(), help="Draw a PNG there.")
+def point(source: str, csv_file: str | None, picture: str | None, **options: Any) -> None:
+    """Take one point of a material along a strain path, without a grid, and print its history."""
+    families = ("flow", "eos", "shear", "melting", "specific_heat")
+    models = {name: chosen for name in families if (chosen := options.pop(name))}
+    with _orderly():
+        from ups.point import plot_history, print_history, run_point, write_csv
+
+        history = run_point(source, models=models, **options)
+        print_history(history)
+        if csv_file is not None:
+            write_csv(history, csv_file)
+        if picture is not None:
+            plot_history(history, picture, source)
+
+
+def _plane(context: click.Context, option: click.Parameter, given: str | None) -> Any:
+    if given is None:
+        return None
+    from ups.pictures.view import Slice
+
+    try:
+        return Slice.parse(given)
+    except ValueError as problem:
+        raise click.BadParameter(str(problem)) from None
+
+
+def _step(context: click.Context, option: click.Parameter, given: str) -> int:
+    if given == "last":
+        return -1
+    try:
+        return int(given)
+    except ValueError:
+        raise click.BadParameter(f"{given!r} is neither the number of a step nor 'last'") from None
+
+
+@main.command()
+@click.argument("archive", type=click.Path())
+@click.option("--variable", metavar="LABEL", help="What to show; by default the stress, or what there is.")
+@click.option("--step", default="last", callback=_step, metavar="STEP", help="Time step; the last.")
+@click.option("--slice", "plane", callback=_plane, metavar="z=0", help="Cut across an axis.")
+@click.option("--material", "materials", multiple=True, type=int, metavar="INDEX", help="Only these.")
+@click.option("--level", type=int, default=0, metavar="INDEX", help="Level of a grid variable; 0.")
+@click.option("--range", "limits", type=float, nargs=2, metavar="LOW HIGH", help="Ends of the colour bar.")
+@click.option("-o", "--output", type=click.Path(), help="The picture, such as x.png.")
+@click.option("--movie", type=click.Path(), help="A movie of all time steps, x.gif or x.mp4.")
+@click.option("--fps", type=click.FloatRange(min=0.1), default=10.0, help="Frames of it a second; 10.")
+def plot(
+    archive: str,
+    variable: str | None,
+    step: int,
+    plane: Any,
+    materials: tuple[int, ...],
+    level: int,
+    limits: tuple[float, float] | None,
+    output: str | None,
+    movie: str | None,
+    fps: float,
+) -> None:
+    """Draw a variable of ARCHIVE, such as stress:vonMises, as a picture or a movie; no display is needed."""
+    if output is None and movie is None:
+        raise click.UsageError("give --output or --movie")
+    with _orderly():
+        from ups.pictures.movie import movie as make_movie
+        from ups.pictures.plot import plot as make_picture
+
+        chosen: dict[str, Any] = {
+            "plane": plane,
+            "materials": materials or None,
+            "level": level,
+            "limits": limits,
+        }
+        if output is not None:
+            click.echo(make_picture(archive, output, variable, step=step, **chosen))
+        if movie is not None:
+            with _progress_bar("frames") as progress:
+                click.echo(
+                    make_movie(archive, movie, variable, frames_per_second=fps, progress=progress, **chosen)
+                )
+
+
+@main.command()
+@click.argument("archive", type=click.Path())
+@click.argument("histories", nargs=-1)
+@click.option("-o", "--output", type=click.Path(), required=True, help="The picture, such as x.png.")
+def history(archive: str, histories: tuple[str, ...], output: str) -> None:
+    """Draw HISTORIES of ARCHIVE over time, such as KineticEnergy or TotalMomentum:X; without names all."""
+    with _orderly():
+        from ups.pictures.history import plot_histories
+
+        click.echo(plot_histories(archive, histories, output))
+
+
+@contextmanager
+def _progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar on the terminal, where there is one, for the library to report to."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = TextColumn(what), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
+    with Progress(
+        *columns, console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()
+    ) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
 if __name__ == "__main__":
     main()

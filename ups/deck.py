@@ -8,10 +8,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from solver.contact import CONTACT
 from solver.creation import GeometryObject
-from solver.declare import FAMILIES, IntVector, Parameter, SubModel, Vector, one_of
+from solver.declare import IntVector, Parameter, SubModel, Vector, one_of
 from solver.flags import Flags
-from solver.materials.damage import for_constitutive_model
+from solver.loads import LOAD
+from solver.materials import CONSTITUTIVE_MODEL
+from solver.materials.constitutive import Material
+from solver.materials.damage import DAMAGE, for_constitutive_model
+from solver.materials.erosion import EROSION
 from solver.time_control import TimeControl
 from ups.diagnostics import DeckError, Diagnostics, Fix, did_you_mean
 from ups.document import Attribute, Document, Text, read_document
@@ -21,12 +26,6 @@ from ups.rules.old_forms import modernise
 
 if TYPE_CHECKING:
     from ups.result import Result
-
-import solver.contact  # isort: skip  # declares the family of contact laws
-import solver.loads  # isort: skip  # declares the family of loads
-import solver.materials  # isort: skip  # declares the family of constitutive models
-import solver.materials.damage  # isort: skip  # declares the family of damage models
-import solver.materials.erosion  # isort: skip  # declares the family of erosion algorithms
 
 
 @dataclass(frozen=True)
@@ -68,9 +67,7 @@ class Save:
     compression: Annotated[
         str, Parameter("compression of this variable", choices=("", "none", "gzip"), attribute=True)
     ] = ""
-    table_lookup: Annotated[
-        str, Parameter("a table", attribute=True, ignored="combustion only")
-    ] = ""
+    table_lookup: Annotated[str, Parameter("a table", attribute=True, ignored="combustion only")] = ""
 
 
 @dataclass(frozen=True)
@@ -80,7 +77,9 @@ class Checkpoint:
     cycle: Annotated[int, Parameter("how many are kept; 0 keeps all", ge=0, attribute=True)] = 2
     interval: Annotated[float, Parameter("time between checkpoints", unit="s", ge=0.0, attribute=True)] = 0.0
     timestepInterval: Annotated[int, Parameter("steps between checkpoints", ge=0, attribute=True)] = 0
-    walltimeStart: Annotated[int, Parameter("seconds of computing before the first", ge=0, attribute=True)] = 0
+    walltimeStart: Annotated[
+        int, Parameter("seconds of computing before the first", ge=0, attribute=True)
+    ] = 0
     walltimeInterval: Annotated[int, Parameter("seconds of computing between", ge=0, attribute=True)] = 0
     walltimeStartHours: Annotated[float, Parameter("hours before the first", ge=0.0, attribute=True)] = 0.0
     walltimeIntervalHours: Annotated[float, Parameter("hours between", ge=0.0, attribute=True)] = 0.0
@@ -125,17 +124,23 @@ class BoundaryType:
     functor_name: Annotated[str, Parameter("a function", ignored="combustion only")] = ""
 
 
+SIDES = ("x-", "x+", "y-", "y+", "z-", "z+", "")
+"""The faces of the domain; empty where an attribute does not name one."""
+
+
 @dataclass(frozen=True)
 class Face:
     """A face of the domain, or a part of one, with its conditions."""
 
     BCType: Annotated[tuple[BoundaryType, ...], Parameter("a condition")] = ()
-    side: Annotated[str, Parameter("the whole face: x-, x+, y-, ...", attribute=True)] = ""
-    circle: Annotated[str, Parameter("a circle of this face", attribute=True)] = ""
-    annulus: Annotated[str, Parameter("a ring of this face", attribute=True)] = ""
-    ellipse: Annotated[str, Parameter("an ellipse of this face", attribute=True)] = ""
-    rectangle: Annotated[str, Parameter("a rectangle of this face", attribute=True)] = ""
-    rectangulus: Annotated[str, Parameter("a rectangular ring of this face", attribute=True)] = ""
+    side: Annotated[str, Parameter("the whole face: x-, x+, y-, ...", choices=SIDES, attribute=True)] = ""
+    circle: Annotated[str, Parameter("a circle of this face", choices=SIDES, attribute=True)] = ""
+    annulus: Annotated[str, Parameter("a ring of this face", choices=SIDES, attribute=True)] = ""
+    ellipse: Annotated[str, Parameter("an ellipse of this face", choices=SIDES, attribute=True)] = ""
+    rectangle: Annotated[str, Parameter("a rectangle of this face", choices=SIDES, attribute=True)] = ""
+    rectangulus: Annotated[
+        str, Parameter("a rectangular ring of this face", choices=SIDES, attribute=True)
+    ] = ""
     origin: Annotated[str, Parameter("centre, three numbers", unit="m", attribute=True)] = ""
     radius: Annotated[float, Parameter("radius of the circle", unit="m", gt=0.0, attribute=True)] = 0.0
     inner_radius: Annotated[float, Parameter("of a ring", unit="m", gt=0.0, attribute=True)] = 0.0
@@ -143,7 +148,10 @@ class Face:
     minor_radius: Annotated[float, Parameter("of an ellipse", unit="m", gt=0.0, attribute=True)] = 0.0
     major_radius: Annotated[float, Parameter("of an ellipse", unit="m", gt=0.0, attribute=True)] = 0.0
     angle: Annotated[
-        float, Parameter("of the ellipse's long axis with the first axis of the face", unit="degrees", attribute=True)
+        float,
+        Parameter(
+            "of the ellipse's long axis with the first axis of the face", unit="degrees", attribute=True
+        ),
     ] = 0.0
     lower: Annotated[str, Parameter("corner of a rectangle, three numbers", unit="m", attribute=True)] = ""
     upper: Annotated[str, Parameter("corner of a rectangle, three numbers", unit="m", attribute=True)] = ""
@@ -202,7 +210,7 @@ class MaterialSection:
     """A material: its constants, how it answers deformation, and the bodies made of it."""
 
     density: Annotated[float, Parameter("density at the start", unit="kg/m^3", gt=0.0)]
-    constitutive_model: Annotated[Any, SubModel("constitutive_model")]
+    constitutive_model: Annotated[Any, SubModel(CONSTITUTIVE_MODEL.name)]
     thermal_conductivity: Annotated[float, Parameter("thermal conductivity", unit="W/(m K)", ge=0.0)]
     specific_heat: Annotated[float, Parameter("specific heat at constant volume", unit="J/(kg K)", gt=0.0)]
     geom_object: Annotated[tuple[GeometryObject, ...], Parameter("a body of this material")] = ()
@@ -221,9 +229,22 @@ class MaterialSection:
     possible_alpha_material: Annotated[
         bool, Parameter("may be the body whose surface separates it from the others in contact")
     ] = True
-    damage_model: Annotated[Any, SubModel("damage")] = None
-    erosion: Annotated[Any, SubModel("erosion")] = None
+    damage_model: Annotated[Any, SubModel(DAMAGE.name)] = None
+    erosion: Annotated[Any, SubModel(EROSION.name)] = None
     name: Annotated[str, Parameter("name of the material", attribute=True)] = ""
+
+    @property
+    def constants(self) -> Material:
+        """The constants of the material as its models take them."""
+        return Material(
+            density=self.density,
+            specific_heat=self.specific_heat,
+            specific_heat_constant_pressure=self.specific_heat if self.C_p is None else self.C_p,
+            thermal_conductivity=self.thermal_conductivity,
+            room_temperature=self.room_temp,
+            melt_temperature=self.melt_temp,
+            thermal_expansion=self.linear_thermal_expansion_coef,
+        )
 
     def faults(self) -> list[tuple[str, str]]:
         """Models that make no sense together, each with why."""
@@ -240,7 +261,7 @@ class MPMMaterials:
     """Materials and how they touch."""
 
     material: Annotated[tuple[MaterialSection, ...], Parameter("a material")]
-    contact: Annotated[tuple[Any, ...], SubModel("contact", many=True)] = ()
+    contact: Annotated[tuple[Any, ...], SubModel(CONTACT.name, many=True)] = ()
     thermal_contact: Annotated[Opaque | None, Parameter("materials exchange heat at nodes they share")] = None
 
 
@@ -255,7 +276,7 @@ class MaterialProperties:
 class LoadSection:
     """Loads on particles."""
 
-    loads: Annotated[tuple[Any, ...], SubModel("load", many=True)] = ()
+    loads: Annotated[tuple[Any, ...], SubModel(LOAD.name, many=True)] = ()
 
 
 @dataclass(frozen=True)
@@ -406,6 +427,3 @@ def _component(document: Document, diagnostics: Diagnostics) -> str:
         diagnostics.error("UPS209", f"unknown method {at.value.strip()!r}", at, suggestion, repair)
         return nearest or ""
     return name
-
-
-assert {"geometry", "constitutive_model", "contact"} <= FAMILIES.keys()

@@ -9,11 +9,12 @@ import numpy as np
 
 from solver.contact.law import ContactLaw
 from solver.creation import Creation, ParticleIds, create_particles
-from solver.declare import FAMILIES, IntVector, Vector
+from solver.declare import IntVector, Vector
 from solver.flags import Flags
 from solver.grid import Grid, Patch
+from solver.interpolation import INTERPOLATOR
 from solver.loads.loads import Loads
-from solver.materials.constitutive import Material, initialize, state_record
+from solver.materials.constitutive import initialize, state_record
 from solver.materials.damage import for_constitutive_model, initialize_damage
 from solver.materials.erosion import lets_fail
 from solver.materials.failure import Failure, new_failure
@@ -23,13 +24,11 @@ from ups.deck import Box, Deck, Level, MaterialSection, Specification
 from ups.diagnostics import DeckError, Diagnostics, Located
 from ups.faces import regions
 
-import solver.interpolation  # isort: skip  # declares the family of interpolators
-
 TOLERANCE = 1.0e-6
 """How far, in cells, a box's edges may lie from the lines of the grid."""
 
 
-class Problem(Exception):
+class ProblemError(Exception):
     """A deck whose parts do not fit together; ``at`` is the place to show."""
 
     def __init__(self, code: str, message: str, at: Any, suggestion: str | None = None) -> None:
@@ -54,7 +53,7 @@ def build(deck: Deck) -> Any:
     builder = _Builder(deck, specification)
     try:
         return builder.simulation()
-    except Problem as problem:
+    except ProblemError as problem:
         at: Located | None = problem.at if not isinstance(problem.at, type(None)) else deck.document.root
         deck.diagnostics.error(problem.code, problem.message, at, problem.suggestion)
         raise DeckError(deck.diagnostics, deck.sources) from None
@@ -65,7 +64,7 @@ def build_grid(level: Level, place: Callable[[Any], Any]) -> Grid:
 
     Raises
     ------
-    Problem
+    ProblemError
         where boxes do not fit on one lattice of cells.
     """
     boxes = level.Box
@@ -73,7 +72,9 @@ def build_grid(level: Level, place: Callable[[Any], Any]) -> Grid:
     for box in boxes:
         for axis, name in enumerate("xyz"):
             if not box.upper[axis] > box.lower[axis]:
-                raise Problem("UPS401", f"the upper corner of the box is not above the lower one in {name}", place(box))
+                raise ProblemError(
+                    "UPS401", f"the upper corner of the box is not above the lower one in {name}", place(box)
+                )
     spacing = _spacing(level, place)
     patches: list[Patch] = []
     highest = [0, 0, 0]
@@ -103,10 +104,12 @@ def _spacing(level: Level, place: Callable[[Any], Any]) -> Vector:
         if own is None:
             continue
         if found is not None and any(abs(a - b) > TOLERANCE * b for a, b in zip(own, found, strict=True)):
-            raise Problem("UPS405", f"the box has cells of {own}, another box or the level of {found}", place(box))
+            raise ProblemError(
+                "UPS405", f"the box has cells of {own}, another box or the level of {found}", place(box)
+            )
         found = found or own
     if found is None:
-        raise Problem("UPS101", "the box needs <resolution> or <spacing>", place(level.Box[0]))
+        raise ProblemError("UPS101", "the box needs <resolution> or <spacing>", place(level.Box[0]))
     return found
 
 
@@ -118,7 +121,7 @@ def _cell_index(
         cells = (corner[axis] - anchor[axis]) / spacing[axis]
         nearest = round(cells)
         if abs(cells - nearest) > 1.0e-3:
-            raise Problem(
+            raise ProblemError(
                 "UPS405",
                 f"the box's corner {corner} is not on the lines of the grid: {cells:g} cells from the anchor in "
                 f"{'xyz'[axis]}",
@@ -135,7 +138,9 @@ def _split(
     counts = box.patches
     for axis in range(3):
         if counts[axis] > high[axis] - low[axis]:
-            raise Problem("UPS405", f"{counts[axis]} patches in {'xyz'[axis]} are more than cells", place(box))
+            raise ProblemError(
+                "UPS405", f"{counts[axis]} patches in {'xyz'[axis]} are more than cells", place(box)
+            )
     patches = []
 
     def cut(axis: int, i: int) -> int:
@@ -156,7 +161,9 @@ def _common(level: Level, name: str, place: Callable[[Any], Any]) -> IntVector:
     for box in level.Box:
         own = getattr(box, name)
         if own is not None and found is not None and own != found:
-            raise Problem("UPS405", f"<{name}> differs from that of another box or of the level", place(box))
+            raise ProblemError(
+                "UPS405", f"<{name}> differs from that of another box or of the level", place(box)
+            )
         found = found or own
     return found or (0, 0, 0)
 
@@ -182,7 +189,9 @@ class _Builder:
             self._guard("UPS402", law, lambda law=law: law.check(len(materials)))  # type: ignore[misc]
         loads = self._loads(grid)
         creations = self._particles(grid, interpolator, loads, contact)
-        bodies = [self._body(i, m, c, contact) for i, (m, c) in enumerate(zip(materials, creations, strict=True))]
+        bodies = [
+            self._body(i, m, c, contact) for i, (m, c) in enumerate(zip(materials, creations, strict=True))
+        ]
         face_section = self.spec.Grid.BoundaryConditions
         simulation = Simulation(
             grid=grid,
@@ -207,16 +216,16 @@ class _Builder:
     # ---- parts ---------------------------------------------------------------------------------------------
 
     def _problem_at(self, code: str, message: str, record: Any) -> Exception:
-        return Problem(code, message, self.place(record))
+        return ProblemError(code, message, self.place(record))
 
     def _guard(self, code: str, record: Any, action: Callable[[], Any]) -> Any:
         """Run an action; what it raises as ValueError becomes a problem at the record's place."""
         try:
             return action()
         except FileNotFoundError as problem:
-            raise Problem("UPS408", str(problem), self.place(record)) from None
+            raise ProblemError("UPS408", str(problem), self.place(record)) from None
         except ValueError as problem:
-            raise Problem(code, str(problem), self.place(record)) from None
+            raise ProblemError(code, str(problem), self.place(record)) from None
 
     def _refuse_unsupported(self) -> None:
         flags = self.flags
@@ -235,17 +244,17 @@ class _Builder:
                 tag = what.split()[0]
                 element = self.place(flags)
                 at = element.get(tag) if element is not None else None
-                raise Problem("UPS412", f"{what} is known, and not run by this program", at or element)
+                raise ProblemError("UPS412", f"{what} is known, and not run by this program", at or element)
 
     def _grid(self) -> Grid:
         levels = self.spec.Grid.Level
         if len(levels) > 1:
-            raise Problem("UPS412", "this program runs on one level", self.place(levels[1]))
+            raise ProblemError("UPS412", "this program runs on one level", self.place(levels[1]))
         return build_grid(levels[0], self.place)
 
     def _interpolator(self, grid: Grid) -> Any:
         name = self.flags.interpolator
-        chosen = FAMILIES["interpolator"].models[name]
+        chosen = INTERPOLATOR.models[name]
         interpolator = self._guard(
             "UPS405",
             self.flags,
@@ -255,18 +264,23 @@ class _Builder:
         level = self.place(self.spec.Grid.Level[0])
         if name == "linear":
             if any(grid.extra_cells):
-                raise Problem("UPS409", "the linear interpolator takes extraCells [0,0,0]", level, "set <extraCells> [0,0,0]")
+                raise ProblemError(
+                    "UPS409",
+                    "the linear interpolator takes extraCells [0,0,0]",
+                    level,
+                    "set <extraCells> [0,0,0]",
+                )
         else:
             allowed = [(1, 1, 1)] + [(1, 1, 0)] * self.flags.axisymmetric
             if sums not in allowed:
-                raise Problem(
+                raise ProblemError(
                     "UPS409",
                     f"the {name} interpolator needs extraCells and periodic to add up to [1,1,1], here {list(sums)}",
                     level,
                     f"set <extraCells> {[1 - p for p in grid.periodic]}",
                 )
         if self.flags.axisymmetric and grid.cells[2] != 1:
-            raise Problem("UPS409", "an axisymmetric grid is one cell thick in z", level)
+            raise ProblemError("UPS409", "an axisymmetric grid is one cell thick in z", level)
         return interpolator
 
     def _gravity(self) -> Vector:
@@ -274,17 +288,6 @@ class _Builder:
         if constants is not None:
             return constants
         return self.flags.gravity or (0.0, 0.0, 0.0)
-
-    def _constants(self, section: MaterialSection) -> Material:
-        return Material(
-            density=section.density,
-            specific_heat=section.specific_heat,
-            specific_heat_constant_pressure=section.C_p if section.C_p is not None else section.specific_heat,
-            thermal_conductivity=section.thermal_conductivity,
-            room_temperature=section.room_temp,
-            melt_temperature=section.melt_temp,
-            thermal_expansion=section.linear_thermal_expansion_coef,
-        )
 
     def _loads(self, grid: Grid) -> Loads | None:
         records = self.spec.PhysicalBC.MPM.loads
@@ -315,7 +318,7 @@ class _Builder:
                 lambda section=section: create_particles(  # type: ignore[misc]
                     section.geom_object,
                     grid,
-                    self._constants(section),
+                    section.constants,
                     ids,
                     axisymmetric=self.flags.axisymmetric,
                     tetrahedral=self.flags.interpolator == "cpti",
@@ -329,14 +332,18 @@ class _Builder:
                 )
         if not any(len(c.particles) for c in creations):
             at = self.place(self.spec.MaterialProperties.MPM)
-            raise Problem("UPS411", "the deck has no particles: no shape covers a lattice point of the grid", at)
+            raise ProblemError(
+                "UPS411", "the deck has no particles: no shape covers a lattice point of the grid", at
+            )
         return creations
 
-    def _body(self, index: int, section: MaterialSection, creation: Creation, contact: tuple[ContactLaw, ...]) -> Any:
+    def _body(
+        self, index: int, section: MaterialSection, creation: Creation, contact: tuple[ContactLaw, ...]
+    ) -> Any:
         from solver.simulation import Body
 
         model = section.constitutive_model
-        material = self._constants(section)
+        material = section.constants
         failure = self._failure(section, creation)
         if hasattr(model, "failure_is_checked"):
             model = model._replace(failure_is_checked=lets_fail(failure.erosion))

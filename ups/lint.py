@@ -128,6 +128,9 @@ def _lint_all(decks: list[Path], jobs: int) -> Iterator[tuple[list[Diagnostic], 
         return
     from concurrent.futures import ProcessPoolExecutor
 
+    from ups.rules.rule import all_rules
+
+    all_rules()  # their codes are to be known here too, where the findings arrive
     with ProcessPoolExecutor(min(jobs, len(decks))) as pool:
         yield from pool.map(_lint_one, decks, chunksize=4)
 

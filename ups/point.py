@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.materials.constitutive import Material
 from ups.deck import MaterialSection, find_data_file, read_deck
 from ups.diagnostics import DeckError, Diagnostics, suggestion_for
 from ups.document import read_document
@@ -92,26 +91,13 @@ def run_point(
         strain_path = _read_table(Path(table), steps) if table else _path(mode, strain, strain_rate, steps)
         return drive(
             section.constitutive_model,
-            material_constants(section),
+            section.constants,
             strain_path,
             temperature=temperature,
             isothermal=isothermal,
         )
     except PointDriverError as problem:
         _refuse("UPS601", str(problem))
-
-
-def material_constants(section: MaterialSection) -> Material:
-    """The constants of a material as its constitutive model takes them."""
-    return Material(
-        density=section.density,
-        specific_heat=section.specific_heat,
-        specific_heat_constant_pressure=section.specific_heat if section.C_p is None else section.C_p,
-        thermal_conductivity=section.thermal_conductivity,
-        room_temperature=section.room_temp,
-        melt_temperature=section.melt_temp,
-        thermal_expansion=section.linear_thermal_expansion_coef,
-    )
 
 
 def catalogue_material(name: str, models: Mapping[str, str] | None = None) -> MaterialSection:

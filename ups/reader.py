@@ -275,9 +275,11 @@ class Reader(ValueReader):
     def _missing_model(self, info: FieldInfo, family: Family, element: Element) -> Any:
         if self.complete:
             choices = ", ".join(sorted(family.models)[:12])
-            what = f"<{info.tag}>" if family.key != "tag" else family.meaning
-            message = f"<{element.tag}> needs {what} ({family.meaning}): {choices}"
-            self.error("UPS101", message, element, f"add {what}")
+            what = f"<{info.tag}> ({family.meaning})" if family.key != "tag" else f"a {family.meaning}"
+            add = (
+                f"<{info.tag}>" if family.key != "tag" else f"<{next(iter(sorted(family.models)), '')}>, say"
+            )
+            self.error("UPS101", f"<{element.tag}> needs {what}: {choices}", element, f"add {add}")
         return FAILED
 
     def model(self, family: Family, element: Element) -> Any | None:

@@ -11,6 +11,7 @@ from ups.diagnostics import Diagnostic, Diagnostics, Fix, Severity, did_you_mean
 from ups.element import Attribute, Element, Text
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
+_WITH_UNIT = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s+[A-Za-z]")
 _INTEGER = re.compile(r"[-+]?\d+\Z")
 _MOST_DIGITS = 18
 _SPECIAL = {"inf", "+inf", "-inf", "nan"}
@@ -194,6 +195,9 @@ def bound_problem(parameter: Parameter, value: float) -> str:
 
 def _repaired_number(text: str) -> str | None:
     """The number that a mistyped one may have meant."""
+    with_unit = _WITH_UNIT.match(text)
+    if with_unit:
+        return with_unit.group(1)
     candidate = re.sub(r"[dD](?=[-+]?\d+$)", "e", text.replace(",", ".").replace(" ", ""))
     candidate = re.sub(r"[^-+.\deE]", "", candidate)
     return candidate if candidate != text and NUMBER.match(candidate) else None

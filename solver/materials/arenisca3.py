@@ -137,7 +137,7 @@ def widest_bounds(model: Arenisca3) -> Bounds:
 @implements(is_yielding, Arenisca3)
 def is_outside_of_revolution(model: Arenisca3, at: Surface, stress: Invariants) -> bool:
     """The Lode angle does not count."""
-    return is_outside(at, stress.i1, stress.j2, stress.root_j2, 1.0)
+    return is_outside(at, stress.i1, stress.j2, stress.root_j2)
 
 
 class Meridian(NamedTuple):
@@ -151,7 +151,7 @@ class Meridian(NamedTuple):
 def contains(at: Surface, stretch: float, point: Meridian) -> bool:
     """Whether a point of the plane lies inside the yield surface."""
     root_j2 = point.r / stretch
-    return not is_outside(at, math.sqrt(3.0) * point.z, root_j2 * root_j2, root_j2, 1.0)
+    return not is_outside(at, math.sqrt(3.0) * point.z, root_j2 * root_j2, root_j2)
 
 
 @inline

@@ -65,6 +65,8 @@ class Arenisca4(NamedTuple):
     With sin 3 theta = -J3 / 2 (3 / J2)^(3/2) the factor is that of Gudehus, (1 + s + (1 - s) / psi) / 2 with
     s = sin 3 theta, or of Mohr and Coulomb, 2 sqrt(3) / (3 - sin phi) (cos theta - sin phi sin theta /
     sqrt(3)) with sin phi = 3 (1 - psi) / (1 + psi). The closest point is sought among the principal stresses.
+    Uintah multiplies the strength by the factor, which turns the corners of the Mohr-Coulomb surface inwards;
+    here sqrt(J2) is multiplied (Brannon, Fossum and Strack, Kayenta, Sandia report SAND2009-2282).
     """
 
     PEAKI1: of_rock.PeakI1
@@ -159,7 +161,7 @@ def narrow_bounds(model: Arenisca4) -> Bounds:
 
 @inline
 def lode_factor(model: Arenisca4, j2: float, j3: float) -> float:
-    """The factor of the shear strength at a Lode angle."""
+    """The factor of sqrt(J2) at a Lode angle: 1 in triaxial compression, 1 / psi in extension."""
     if j2 == 0.0 or model.J3_type == 0:
         return 1.0
     sin_3_theta = -0.5 * j3 * math.sqrt(27.0 / (j2 * j2 * j2))
@@ -174,7 +176,8 @@ def lode_factor(model: Arenisca4, j2: float, j3: float) -> float:
 @implements(is_yielding, Arenisca4)
 def is_outside_at_lode_angle(model: Arenisca4, at: Surface, stress: Invariants) -> bool:
     """The strength depends on the Lode angle."""
-    return is_outside(at, stress.i1, stress.j2, stress.root_j2, lode_factor(model, stress.j2, stress.j3))
+    factor = lode_factor(model, stress.j2, stress.j3)
+    return is_outside(at, stress.i1, factor * factor * stress.j2, factor * stress.root_j2)
 
 
 class PrincipalStress(NamedTuple):
@@ -252,16 +255,32 @@ def spiral(point: PrincipalStress, trial: PrincipalStress) -> Spiral:
     return Spiral(along(zero, x, length), along(zero, y, length), along(zero, z, length))
 
 
+@inline
+def with_axes_of(trial: PrincipalStress, point: PrincipalStress) -> PrincipalStress:
+    """A point whose principal stresses are equal wherever those of the trial stress are.
+
+    Axes that belong to equal principal stresses are not known, so those of the point are averaged; as the
+    yield surface is convex and symmetric the average is inside. Uintah divides by the difference of principal
+    stresses, be it rounding alone, and its stress may then be far from the yield surface.
+    """
+    alike = EQUAL * size(trial)
+    if trial.high - trial.low <= alike:
+        mean = (point.low + point.middle + point.high) / 3.0
+        return PrincipalStress(mean, mean, mean)
+    if trial.high - trial.middle <= alike:
+        mean = 0.5 * (point.middle + point.high)
+        return PrincipalStress(point.low, mean, mean)
+    if trial.middle - trial.low <= alike:
+        mean = 0.5 * (point.low + point.middle)
+        return PrincipalStress(mean, mean, point.high)
+    return point
+
+
 @implements(return_to_surface, Arenisca4)
 def return_among_principal_stresses(
     model: Arenisca4, at: Surface, stiffness: Moduli, trial: Tensor, stress: Invariants
 ) -> Returned:
-    """The closest point; the principal axes stay.
-
-    Where two principal stresses are equal they stay so and take the middle one of the point that was found,
-    where all are, the highest, as in Uintah. Where they differ by rounding Uintah divides by the difference,
-    and its stress may be far from the yield surface; here such stresses count as equal.
-    """
+    """The closest point; the principal axes stay."""
     stretch = deviator_stretch(model, stiffness)
     star = spectrum(isotropic(stress.i1 / 3.0) + stretch * stress.deviator)
     target = PrincipalStress(star.third, star.second, star.first)
@@ -280,15 +299,8 @@ def return_among_principal_stresses(
                 point = candidate
                 break
             n += 1
-    low, middle, high = point.low, point.middle, point.high
-    alike = EQUAL * size(target)
-    if target.high - target.low <= alike:
-        low, middle = high, high
-    elif target.high - target.middle <= alike:
-        high = middle
-    elif target.middle - target.low <= alike:
-        low = middle
-    found = compose(high, middle, low, star.axes)
+    point = with_axes_of(target, point)
+    found = compose(point.high, point.middle, point.low, star.axes)
     i1 = trace(found)
     stress_found = isotropic(i1 / 3.0) + (1.0 / stretch) * deviator(found)
     return Returned(stress_found, i1, tries >= PATIENCE * TURNS)

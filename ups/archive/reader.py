@@ -31,7 +31,7 @@ from ups.archive.reductions import Reduction, read_history
 from ups.archive.stored import StoredTimestep, blocks_of
 from ups.archive.table import Entry
 from ups.archive.units import plain_name
-from ups.archive.variables import GLOBAL_MATERIAL, PER_PATCH, Variable
+from ups.archive.variables import FACES, GLOBAL_MATERIAL, NODE, PER_PATCH, Variable
 from ups.diagnostics import did_you_mean
 
 if TYPE_CHECKING:
@@ -67,6 +67,14 @@ class GridField:
     def origin(self) -> IntVector:
         """Index of the first value."""
         return self.box.low
+
+    @property
+    def interior(self) -> Box:
+        """Indices of the values that are not in extra cells."""
+        low, high = self.level.interior
+        site, periodic = self.variable.container, self.level.periodic
+        closing = [site in (NODE, FACES[axis]) and not periodic[axis] for axis in range(3)]
+        return Box(low, (high[0] + closing[0], high[1] + closing[1], high[2] + closing[2]))
 
     @property
     def coordinates(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

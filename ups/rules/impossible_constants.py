@@ -33,6 +33,7 @@ class ImpossibleConstants(Rule):
         for material in deck.particle_materials:
             yield from self._poisson_ratio(material)
             yield from self._melting(material)
+            yield from self._cold(material)
 
     def _poisson_ratio(self, material: Element) -> Iterator[Diagnostic]:
         model = material.get("constitutive_model")
@@ -58,6 +59,13 @@ class ImpossibleConstants(Rule):
             if child is not None and temperature is not None and temperature >= limit:
                 message = f"the body starts at {temperature:g} K, its material melts at {limit:g} K"
                 yield self.warning(message, child)
+
+    def _cold(self, material: Element) -> Iterator[Diagnostic]:
+        for body in material.all("geom_object"):
+            child = body.get("temperature")
+            temperature = number(child.text) if child is not None else None
+            if child is not None and temperature is not None and temperature < 0.0:
+                yield self.warning(f"the body starts at {temperature:g}: temperatures are absolute", child)
 
 
 def _first(model: Element, tags: tuple[str, ...]) -> Element | None:

@@ -45,6 +45,8 @@ class MaterialIndex(Rule):
         for condition in deck.all("Grid/BoundaryConditions/Face/BCType"):
             index = condition.attributes.get("id")
             if index is not None and index.value.strip() != "all":
+                if not _INTEGER.fullmatch(index.value.strip()):
+                    yield self.error(f"id is {index.value!r}; it must be a material index, or all", index)
                 yield from self._check_text(index, "id", every)
         for save in deck.all("DataArchiver/save"):
             chosen = save.attributes.get("material")

@@ -96,6 +96,8 @@ def _provided(deck: DeckView) -> set[str]:
     found |= {variable.label for state in states for variable in state_variables(state).values()}
     if deck.text("MPM/boundary_traction_faces"):
         found |= {name for name in LABELS if name.startswith("Bndy")}
+    if deck.component in _WITH_GASES:
+        found.add("p.pressure")
     if deck.switch("MPM/use_cohesive_zones"):
         found |= {name for name in LABELS if name.startswith("cz.")}
     return found - {""}

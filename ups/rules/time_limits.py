@@ -17,7 +17,8 @@ class TimeLimits(Rule):
     """Limits of the time or of the time step contradict each other.
 
     **Why.** With ``delt_min`` above ``delt_max`` the step is ``delt_max`` whatever stability asks for. With
-    ``maxTime`` not after ``initTime`` no step is done.
+    ``maxTime`` not after ``initTime`` no step is done. A ``timestep_multiplier`` above 1 makes steps longer than
+    is stable.
 
     **Example.** ``<delt_min>1e-5</delt_min> <delt_max>1e-6</delt_max>``
 
@@ -36,3 +37,7 @@ class TimeLimits(Rule):
                 continue
             if low > high or (low == high and low_tag == "initTime"):
                 yield self.error(f"<{low_tag}> is {low:g} and <{high_tag}> {high:g}: {what}", at)
+        factor, at = deck.number("Time/timestep_multiplier"), deck.find("Time/timestep_multiplier")
+        if factor is not None and at is not None and factor > 1.0:
+            message = f"<timestep_multiplier> is {factor:g}: steps are longer than stability allows"
+            yield self.warning(message, at, "give a number below 1")

@@ -76,13 +76,13 @@ def surface(model: Any, limit: ShearLimit, cap: float, zeta: float) -> Surface:
 
 
 @inline
-def is_outside(at: Surface, i1: float, j2: float, root_j2: float, lode_factor: float) -> bool:
-    """Whether a stress lies outside; ``lode_factor`` scales the surface by the Lode angle."""
+def is_outside(at: Surface, i1: float, j2: float, root_j2: float) -> bool:
+    """Whether a stress lies outside; a negative ``root_j2`` lies inside the shear limit."""
     above = i1 - at.zeta
     if above < at.cap or above > at.limit.peak:
         return True
     strength = at.limit.a1 - at.limit.a3 * math.exp(at.limit.a2 * above) - at.limit.a4 * above
     if above < at.branch:
         depth = (at.branch - above) / (at.branch - at.cap)
-        return j2 > lode_factor * lode_factor * strength * strength * (1.0 - depth * depth)
-    return root_j2 > lode_factor * strength
+        return j2 > strength * strength * (1.0 - depth * depth)
+    return root_j2 > strength

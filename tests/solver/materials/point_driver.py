@@ -7,10 +7,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from scipy.linalg import logm
 
 from solver.materials.constitutive import Material, Point, Step, initialize, state_record, stress_update
 from solver.particles import Particles, new_arrays
+from solver.point_driver import logarithm
 from solver.tensor import put_tensor, tensor_at
 
 MATERIAL = Material(
@@ -87,7 +87,7 @@ class Driver:
         old_volume = p.volume[0]
         increment = np.asarray(gradient) @ np.linalg.inv(old_gradient[0])
         p.deformation_gradient[0] = gradient
-        p.velocity_gradient[0] = (logm(increment).real if self.exact_rates else increment - np.eye(3)) / dt
+        p.velocity_gradient[0] = (logarithm(increment[None])[0] if self.exact_rates else increment - np.eye(3)) / dt
         p.volume[0] = old_volume * np.linalg.det(increment)
         step = Step(dt, self.time, self.length, self.viscosity, 0.2, 2.0, False)
         update = compiled_update() if self.compiled else update_particle

@@ -1,0 +1,1 @@
+"""Makes ``small_decks`` importable from the folders below."""

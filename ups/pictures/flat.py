@@ -1,0 +1,142 @@
+"""Pictures along one or two axes, drawn by matplotlib."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ups.archive.variables import NODE
+from ups.inspect.extract import interpolate
+from ups.pictures.view import Range, View, grid_field, particle_frame
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_DPI = 120
+_WIDTH = 8.0
+"""Inches."""
+
+_MOST_BOXES = 200_000
+"""Particles beyond this many are drawn as dots."""
+
+
+def draw(view: View, step: int, shown: Range) -> Figure:
+    """Draw a view along one or two axes.
+
+    Parameters
+    ----------
+    view
+        What is shown, along one or two axes.
+    step
+        The time step.
+    shown
+        What the colour bar, or along one axis the other one, and the axes cover.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=_size(view, shown), dpi=_DPI, layout="constrained")
+    axes = figure.add_subplot()
+    axes.set_title(view.title(step), fontsize=10)
+    if len(view.axes) == 1:
+        _draw_profile(view, step, axes, shown)
+    else:
+        _draw_plane(view, step, figure, axes, shown)
+    return figure
+
+
+def pixels(figure: Figure) -> np.ndarray:
+    """Colours of a figure, shape (height, width, 3)."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure to a file, in the format of its suffix; raises OSError where the disk refuses."""
+    figure.savefig(path, dpi=_DPI)
+
+
+def _size(view: View, shown: Range) -> tuple[float, float]:
+    """Width and height in inches, of about the shape of what is shown."""
+    if len(view.axes) == 1:
+        return _WIDTH, 5.0
+    across, up = (shown.high[axis] - shown.low[axis] for axis in view.axes)
+    height = min(max((_WIDTH - 2.0) * up / across, 2.0), 9.0)
+    return min(max((height * across / up), 2.5) + 2.0, _WIDTH) if height == 9.0 else _WIDTH, height + 1.2
+
+
+def _draw_profile(view: View, step: int, axes: Any, shown: Range) -> None:
+    (axis,) = view.axes
+    if view.named.source.is_particle:
+        frame = particle_frame(view, step)
+        axes.plot(frame.positions[:, axis], frame.values, ".", markersize=4)
+    else:
+        places, values = _on_axes(view, step)
+        axes.plot(places[0], values, "o-", markersize=3, linewidth=1)
+    least, most = shown.values
+    margin = 0.05 * (most - least)
+    axes.set(xlim=(shown.low[axis], shown.high[axis]), ylim=(least - margin, most + margin))
+    axes.set(xlabel=f"{'xyz'[axis]} [m]", ylabel=view.label)
+    axes.grid(alpha=0.3)
+
+
+def _draw_plane(view: View, step: int, figure: Figure, axes: Any, shown: Range) -> None:
+    across, up = view.axes
+    low, high = shown.low, shown.high
+    axes.set(xlim=(low[across], high[across]), ylim=(low[up], high[up]), aspect="equal")
+    axes.set(xlabel=f"{'xyz'[across]} [m]", ylabel=f"{'xyz'[up]} [m]")
+    if view.named.source.is_particle:
+        drawn = _particles(view, step, axes, shown)
+    else:
+        (x, y), values = _on_axes(view, step)
+        shading = "gouraud" if view.named.source.container == NODE else "nearest"
+        drawn = axes.pcolormesh(x, y, values.T, shading=shading, clim=shown.values)
+    figure.colorbar(drawn, ax=axes, label=view.label, shrink=0.9)
+
+
+def _particles(view: View, step: int, axes: Any, shown: Range) -> Any:
+    """Draw particles as the outlines of their boxes in the plane, or as dots where they are many."""
+    from matplotlib.collections import PolyCollection
+
+    frame, plane = particle_frame(view, step), list(view.axes)
+    order = np.argsort(np.abs(np.nan_to_num(frame.values)), kind="stable")  # the large ones on top
+    places, values = frame.positions[order][:, plane], frame.values[order]
+    if len(places) > _MOST_BOXES:
+        dots = axes.scatter(*places.T, c=values, s=0.5, marker=",", linewidths=0)
+        dots.set_clim(*shown.values)
+        return dots
+    first, second = (frame.edges[order][:, plane, axis] / 2.0 for axis in plane)
+    corners = np.stack(
+        [places - first - second, places + first - second, places + first + second, places - first + second],
+        1,
+    )
+    boxes = PolyCollection(list(corners), array=values, edgecolors="face", linewidths=0.6)
+    boxes.set_clim(*shown.values)
+    return axes.add_collection(boxes)
+
+
+def _on_axes(view: View, step: int) -> tuple[list[np.ndarray], np.ndarray]:
+    """Positions along the axes of a view, and the grid variable there, between the layers of the others."""
+    found = grid_field(view, step)
+    box = found.interior.within(found.origin)
+    low, high = found.level.bounds(found.level.interior)
+    lines = [
+        found.coordinates[axis][box[axis]]
+        if axis in view.axes
+        else np.array([_position(view, axis, (low[axis] + high[axis]) / 2.0)])
+        for axis in range(3)
+    ]
+    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1)
+    values = interpolate(found, places.reshape(-1, 3)).reshape(places.shape[:3])
+    return [lines[axis] for axis in view.axes], values.squeeze(
+        tuple(axis for axis in range(3) if axis not in view.axes)
+    )
+
+
+def _position(view: View, axis: int, middle: float) -> float:
+    """Where an axis that the picture does not extend along is cut."""
+    return view.plane.position if view.plane is not None and view.plane.axis == axis else middle

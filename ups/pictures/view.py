@@ -1,0 +1,321 @@
+"""What a picture shows: which variable, where, and with which limits; and the numbers of one time step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ups.archive import Archive, ArchiveError, GridField, Level, Variable
+from ups.archive.layout import FloatVector
+from ups.archive.measures import Named
+from ups.archive.units import plain_name, with_unit
+from ups.convert.glyphs import particle_edges, positions_of
+
+_PREFERRED = (
+    "p.stress:vonMises",
+    "p.velocity:magnitude",
+    "p.temperature",
+    "p.mass",
+    "p.volume",
+    "press_CC",
+    "temp_CC",
+    "g.velocity:magnitude",
+)
+"""What is shown where nothing is asked for: the first that the archive has."""
+
+_SCALAR = {"Vector": "magnitude", "Point": "magnitude", "Matrix3": "norm"}
+_SCALAR_OF = {"p.stress": "vonMises", "g.stressFS": "vonMises", "p.deformationMeasure": "equivalentStrain"}
+"""The measure that stands for a vector or tensor, by type and, before that, by label."""
+
+
+@dataclass(frozen=True)
+class Slice:
+    """A plane across an axis (0, 1, 2 for x, y, z) at a position."""
+
+    axis: int
+    position: float
+
+    @classmethod
+    def parse(cls, text: str) -> Slice:
+        """Read ``z=0.5``.
+
+        Raises
+        ------
+        ValueError
+            For another form.
+        """
+        axis, equals, position = text.partition("=")
+        if not equals or axis.strip() not in ("x", "y", "z"):
+            raise ValueError(f"{text!r} is not of the form z=0.5")
+        try:
+            return cls("xyz".index(axis.strip()), float(position))
+        except ValueError:
+            raise ValueError(f"{position!r} in {text!r} is not a number") from None
+
+
+@dataclass(frozen=True)
+class View:
+    """What a picture or a movie shows.
+
+    Attributes
+    ----------
+    archive
+        Where it is from.
+    named
+        The variable or measure, a number for each particle or point of the grid.
+    materials
+        Materials that are shown; of a grid variable only one.
+    level
+        Index of the level.
+    plane
+        The slice, or None.
+    axes
+        Axes that the picture extends along, 1 to 3 of them.
+    """
+
+    archive: Archive
+    named: Named
+    materials: tuple[int, ...]
+    level: int
+    plane: Slice | None
+    axes: tuple[int, ...]
+
+    @classmethod
+    def choose(
+        cls,
+        archive: Archive,
+        variable: str | None = None,
+        *,
+        step: int = -1,
+        materials: Sequence[int] | None = None,
+        level: int = 0,
+        plane: Slice | None = None,
+    ) -> View:
+        """Complete what was asked for with what suits the archive.
+
+        Parameters
+        ----------
+        archive
+            The archive.
+        variable
+            Label, perhaps with a measure; None for what is usually looked at first.
+        step
+            A time step that has the variable.
+        materials
+            Materials; None for all, or for a grid variable all together where they are stored so.
+        level
+            Level of a grid variable.
+        plane
+            Slice through a body in space, or None.
+
+        Raises
+        ------
+        ArchiveError
+            Where there is no such variable, material or level, or the slice misses the grid.
+        """
+        named = _default(archive, step) if variable is None else _scalar(archive, archive.find(variable))
+        label = named.declaration.name
+        stored = archive.materials(step, label)
+        if not stored:
+            raise ArchiveError(
+                archive.path,
+                f"{label} is not stored at step {archive.timestep(step).step}",
+                advice=f"there are: {', '.join(archive.labels(step))}",
+            )
+        wanted = tuple(stored if materials is None else materials)
+        absent = [material for material in wanted if material not in stored]
+        if absent:
+            advice = f"its materials are: {', '.join(map(str, stored))}"
+            raise ArchiveError(archive.path, f"{label} is not stored for material {absent[0]}", advice=advice)
+        if named.source.is_grid and materials is None:
+            wanted = (_together(archive, step, stored),)
+        levels = archive.grid(step).levels
+        if not 0 <= level < len(levels):
+            raise ArchiveError(archive.path, f"there is no level {level}, only {len(levels)} levels")
+        return cls(archive, named, wanted, level, plane, _axes(archive, levels[level], plane))
+
+    @property
+    def label(self) -> str:
+        """What the numbers are, with their unit."""
+        return with_unit(plain_name(self.named.declaration.name), self.named.unit)
+
+    def lattice(self, step: int) -> Level:
+        """Level at a time step."""
+        return self.archive.grid(step).levels[self.level]
+
+    def title(self, step: int) -> str:
+        """What the picture shows, in a line."""
+        timestep = self.archive.timestep(step)
+        name = self.archive.index.title or self.archive.path.resolve().name
+        shown = f"{name}, time {timestep.time:.6g} s (step {timestep.step})"
+        if len(self.materials) < len(self.archive.materials(step, self.named.source.name)):
+            shown += f", material {', '.join(map(str, self.materials))}"
+        if self.plane is not None:
+            shown += f", slice {'xyz'[self.plane.axis]} = {self.plane.position:.6g} m"
+        return shown
+
+
+@dataclass(frozen=True)
+class ParticleFrame:
+    """Particles of one time step.
+
+    Attributes
+    ----------
+    positions
+        Shape (n, 3).
+    edges
+        Edge vectors of the boxes that they fill, as columns, shape (n, 3, 3).
+    values
+        Shape (n,).
+    """
+
+    positions: np.ndarray
+    edges: np.ndarray
+    values: np.ndarray
+
+
+def particle_frame(view: View, step: int) -> ParticleFrame:
+    """Particles that a view shows at a time step: all, or those within half a cell of its slice."""
+    level, label = view.lattice(step), view.named.declaration.name
+    parts = []
+    for material in view.materials:
+        positions = positions_of(view.archive, step, material)
+        edges = particle_edges(view.archive, step, material, level)
+        values = view.archive.particles(step, label, material)
+        if view.plane is not None:
+            axis = view.plane.axis
+            near = np.abs(positions[:, axis] - view.plane.position) <= level.spacing[axis] / 2.0
+            positions, edges, values = positions[near], edges[near], values[near]
+        parts.append((positions, edges, values))
+    positions, edges, values = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+    return ParticleFrame(positions, edges, values)
+
+
+def grid_field(view: View, step: int) -> GridField:
+    """Grid variable that a view shows at a time step."""
+    return view.archive.grid_variable(step, view.named.declaration.name, view.materials[0], view.level)
+
+
+@dataclass(frozen=True)
+class Range:
+    """What the colour bar and the axes of a picture cover.
+
+    Attributes
+    ----------
+    values
+        Smallest and largest number.
+    low, high
+        Corners of the box that is looked at.
+    """
+
+    values: tuple[float, float]
+    low: FloatVector
+    high: FloatVector
+
+
+def range_of(view: View, steps: Sequence[int], limits: tuple[float, float] | None = None) -> Range:
+    """Range of a picture, or of all frames of a movie.
+
+    The numbers are the finite ones that are shown, a little more where they hardly differ, so that
+    rounding is not drawn as a pattern. The box is the grid or, where particles fill less than a third of
+    it along each axis, the particles.
+
+    Parameters
+    ----------
+    view
+        What is shown.
+    steps
+        Time steps of the frames.
+    limits
+        Numbers that the colour bar is to cover instead, or None.
+    """
+    level = view.lattice(steps[-1])
+    grid_low, grid_high = (np.array(corner) for corner in level.bounds(level.interior))
+    ends: list[tuple[float, float]] = []
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for step in steps:
+        if view.named.source.is_particle:
+            frame = particle_frame(view, step)
+            values = frame.values
+            places = frame.positions[np.isfinite(frame.positions).all(axis=1)]
+            low = np.minimum(low, places.min(axis=0, initial=np.inf))
+            high = np.maximum(high, places.max(axis=0, initial=-np.inf))
+        else:
+            found = grid_field(view, step)
+            values = found.values[found.interior.within(found.origin)]
+        finite = values[np.isfinite(values)]
+        if finite.size:
+            ends.append((float(finite.min()), float(finite.max())))
+    shown = list(view.axes)
+    if (high >= low).all() and ((high - low)[shown] < (grid_high - grid_low)[shown] / 3.0).all():
+        margin = 0.2 * (high - low)[shown].max() + max(level.spacing)
+        low, high = np.maximum(grid_low, low - margin), np.minimum(grid_high, high + margin)
+    else:
+        low, high = grid_low, grid_high
+    corners = (tuple(corner.tolist()) for corner in (low, high))
+    return Range(limits or _widened(ends), *corners)
+
+
+def _widened(ends: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    """Smallest and largest of all ends, apart by at least a millionth of their size."""
+    if not ends:
+        return 0.0, 1.0
+    low, high = min(end[0] for end in ends), max(end[1] for end in ends)
+    size = max(abs(low), abs(high))
+    if high - low > 1e-6 * size:
+        return low, high
+    return (low - 0.01 * size, high + 0.01 * size) if size else (0.0, 1.0)
+
+
+def _default(archive: Archive, step: int) -> Named:
+    stored = archive.labels(step)
+    for name in _PREFERRED:
+        if name.partition(":")[0] in stored:
+            return archive.find(name)
+    shown = [v for v in archive.variables.values() if v.name in stored and (v.is_particle or v.is_grid)]
+    if not shown:
+        raise ArchiveError(archive.path, "there is no particle or grid variable to show")
+    return _scalar(archive, Named(shown[0]))
+
+
+def _scalar(archive: Archive, named: Named) -> Named:
+    """Return the name of a number: a vector's or tensor's own is given the measure that stands for it."""
+    declared: Variable = named.declaration
+    if not (declared.is_particle or declared.is_grid):
+        raise ArchiveError(archive.path, f"{declared.name} is a {declared.type_name}, which has no place")
+    if not declared.element_type.shape:
+        return named
+    measure = _SCALAR_OF.get(declared.name) or _SCALAR.get(declared.element)
+    if named.measure is not None or measure is None:
+        raise ArchiveError(
+            archive.path,
+            f"{declared.name} is not a number but a {declared.element}",
+            advice=f"choose a component: {declared.name}:{declared.element_type.component_names[:1]}"
+            if named.measure is None
+            else "choose a measure that gives a number",
+        )
+    return archive.find(f"{declared.name}:{measure}")
+
+
+def _together(archive: Archive, step: int, stored: Sequence[int]) -> int:
+    """Material that stands for all together where there is one, as MPM stores nodes; else the first."""
+    position = archive.index.particle_position
+    own = archive.materials(step, position) if position in archive.labels(step) else []
+    return stored[-1] if own and stored[-1] == own[-1] + 1 else stored[0]
+
+
+def _axes(archive: Archive, level: Level, plane: Slice | None) -> tuple[int, ...]:
+    """Axes along which there is more than one cell, the one across the slice left out; at least one."""
+    low, high = level.bounds(level.interior)
+    if plane is not None and not low[plane.axis] <= plane.position <= high[plane.axis]:
+        name = "xyz"[plane.axis]
+        raise ArchiveError(
+            archive.path,
+            f"the slice {name}={plane.position:g} misses the grid",
+            advice=f"{name} reaches from {low[plane.axis]:g} to {high[plane.axis]:g}",
+        )
+    cut = () if plane is None else (plane.axis,)
+    axes = tuple(axis for axis in range(3) if level.interior.shape[axis] > 1 and axis not in cut)
+    return axes or tuple(axis for axis in range(3) if axis not in cut)[:1]
