@@ -159,33 +159,100 @@ def _printer_of_warnings(verbose: bool, quiet: bool) -> Callable[[Deck], None]:
     return show
 
 
+def _say(answer: tuple[str, int]) -> None:
+    """Print the text of an answer and leave with its exit status."""
+    text, status = answer
+    click.echo(text)
+    sys.exit(status)
+
+
 @main.command()
-@click.argument("decks", nargs=-1, required=True, type=click.Path())
+@click.argument("decks", nargs=-1, type=click.Path())
 @click.option("--format", "form", type=click.Choice(["text", "json", "github", "sarif"]), default="text")
 @click.option("--select", multiple=True, metavar="CODE", help="Only findings whose code begins so.")
 @click.option("--ignore", multiple=True, metavar="CODE", help="No findings whose code begins so.")
 @click.option("--jobs", type=click.IntRange(min=1), default=1, help="How many processes share the decks.")
-def lint(
-    decks: tuple[str, ...], form: str, select: tuple[str, ...], ignore: tuple[str, ...], jobs: int
-) -> None:
+@click.option("--fix", is_flag=True, help="Do the safe repairs in the files that hold the cause.")
+@click.option("--unsafe", is_flag=True, help="With --fix or --diff: the other repairs, too.")
+@click.option("--diff", is_flag=True, help="Show the repairs, and do none.")
+@click.option("--stdin", "from_input", is_flag=True, help="Check the deck on the standard input.")
+def lint(decks: tuple[str, ...], from_input: bool, **options: Any) -> None:
     """Check DECKS, files or folders, and report every problem, without running anything.
 
     Exit status 1 where there is an error; warnings and notes do not count.
     """
+    if bool(decks) == from_input and not (from_input and len(decks) == 1):
+        raise click.UsageError("give DECKS to check, or --stdin with at most one name for the deck")
+    if options["unsafe"] and not (options["fix"] or options["diff"]):
+        raise click.UsageError("--unsafe belongs to --fix or --diff")
     with _orderly():
-        from ups.diagnostics import Severity
-        from ups.diagnostics_format import RENDERERS, render_text
-        from ups.lint import exit_status, lint_files
+        from ups.lint import LintOptions, lint_command
 
-        result = lint_files(decks, select=select, ignore=ignore, jobs=jobs)
-        if form == "text":
-            text = render_text(result.diagnostics, result.sources, colour=sys.stdout.isatty())
-            counts = [(result.diagnostics.count(severity), severity.value) for severity in Severity]
-            summary = ", ".join(f"{count} {name}{'s' * (count != 1)}" for count, name in counts)
-            click.echo(f"{text}\n{summary}" if text else summary)
-        else:
-            click.echo(RENDERERS[form](result.diagnostics, result.sources))
-        sys.exit(exit_status(result))
+        text = sys.stdin.read() if from_input else None
+        _say(lint_command(decks, LintOptions(colour=sys.stdout.isatty(), **options), text))
+
+
+@main.command()
+@click.argument("name")
+def explain(name: str) -> None:
+    """Explain NAME: a tag, a model, a saved label, or a code such as UPS302."""
+    with _orderly():
+        from ups.explain import explain_command
+
+        _say(explain_command(name))
+
+
+@main.command()
+@click.argument("deck", type=click.Path())
+def plan(deck: str) -> None:
+    """Say what a run of DECK would do: materials, particles, steps, memory, archive, time."""
+    with _orderly():
+        from ups.plan import plan_command
+
+        _say(plan_command(deck))
+
+
+@main.command()
+@click.argument("component", default="")
+def schema(component: str) -> None:
+    """Write a RELAX NG schema of the deck language, of all of it or of one COMPONENT, for editors."""
+    with _orderly():
+        from ups.schema import schema_command
+
+        _say(schema_command(component))
+
+
+@main.command()
+@click.argument("first", type=click.Path())
+@click.argument("second", type=click.Path())
+def diff(first: str, second: str) -> None:
+    """Compare the decks FIRST and SECOND by what they mean; exit status 1 where they differ."""
+    with _orderly():
+        from ups.deck_diff import diff_command
+
+        _say(diff_command(first, second))
+
+
+@main.command()
+@click.argument("deck", type=click.Path())
+def expand(deck: str) -> None:
+    """Print DECK with its includes in place."""
+    with _orderly():
+        from ups.deck_diff import expand_command
+
+        _say(expand_command(deck))
+
+
+def _region(context: click.Context, option: click.Parameter, given: tuple[float, ...] | None) -> Any:
+    """The box between two corners, or None."""
+    if given is None:
+        return None
+    from ups.convert.selection import Region
+
+    try:
+        return Region((given[0], given[1], given[2]), (given[3], given[4], given[5]))
+    except ValueError as problem:
+        raise click.BadParameter(str(problem)) from None
 
 
 @main.command()
@@ -194,16 +261,45 @@ def lint(
 @click.option("--variable", "variables", multiple=True, metavar="LABEL", help="Only these variables.")
 @click.option("--material", "materials", multiple=True, type=int, metavar="INDEX", help="Only these.")
 @click.option("--step", "steps", multiple=True, type=int, metavar="STEP", help="Only these; -1 is the last.")
+@click.option("--every", type=click.IntRange(min=1), default=1, metavar="N", help="Only every Nth of them.")
+@click.option(
+    "--region", type=float, nargs=6, callback=_region, metavar="X Y Z X Y Z", help="Only what is in this box."
+)
+@click.option("--glyphs", is_flag=True, help="Particles as boxes, deformed as their material is (VTK XML).")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), default=1, help="Steps written at the same time (VTK XML)."
+)
 def convert(
-    archive: str, out: str, variables: tuple[str, ...], materials: tuple[int, ...], steps: tuple[int, ...]
+    archive: str,
+    out: str,
+    variables: tuple[str, ...],
+    materials: tuple[int, ...],
+    steps: tuple[int, ...],
+    every: int,
+    region: Any,
+    glyphs: bool,
+    jobs: int,
 ) -> None:
-    """Convert ARCHIVE to OUT: name.pvd or a folder for ParaView, name.csv, or name.npz."""
+    """Convert ARCHIVE to OUT: name.pvd or a folder for ParaView, name.vtkhdf, name.csv, or name.npz.
+
+    A variable may carry a measure: stress:vonMises, velocity:magnitude, deformationMeasure:strain.
+    """
     with _orderly():
         from ups.convert import convert as convert_archive
 
-        files = convert_archive(
-            archive, out, variables=variables or None, materials=materials or None, steps=steps or None
-        )
+        with _progress_bar("time steps") as progress:
+            files = convert_archive(
+                archive,
+                out,
+                variables=variables or None,
+                materials=materials or None,
+                steps=steps or None,
+                every=every,
+                region=region,
+                glyphs=glyphs,
+                jobs=jobs,
+                progress=progress,
+            )
         for path in files:
             click.echo(path)
 

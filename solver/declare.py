@@ -200,6 +200,11 @@ class Family:
     def find(self, name: str) -> type | None:
         """The record class of a model by its name, old or new; only the module that declares it is loaded."""
         if not self._loaded and name not in self._models:
+            plain = name.replace("_", "").lower()
+            for module in self._modules():
+                if not module.ispkg and module.name.replace("_", "") == plain:
+                    importlib.import_module(f"{self.package}.{module.name}")
+        if not self._loaded and name not in self._models and name not in self._old_names:
             home = self._homes.get(name)
             if home is None and self._homes:
                 return None

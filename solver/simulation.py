@@ -95,6 +95,7 @@ class Simulation:
     face_forces : force of the last step on each face of ``boundary_traction_faces``; contact laws go by it, so a
         checkpoint has to keep it.
     before_step : calls made at the start of each step with (simulation, dt), in order: external loads.
+    after_contact : calls made once contact has acted on the projected velocities: forces between bodies.
     after_boundary_conditions : calls made once v* and a are known: prescribed motion.
     after_step : calls made before particles are sorted out: inserted particles.
     time_step_limits : functions of the time that bound the step from there.
@@ -110,6 +111,7 @@ class Simulation:
     contact_laws: Sequence[ContactLaw] = ()
     thermal_contact: bool = False
     before_step: list[Callable[[Simulation, float], None]] = field(default_factory=list)
+    after_contact: list[Callable[[Simulation, float], None]] = field(default_factory=list)
     after_boundary_conditions: list[Callable[[Simulation, float], None]] = field(default_factory=list)
     after_step: list[Callable[[Simulation, float], None]] = field(default_factory=list)
     time_step_limits: list[Callable[[float], float]] = field(default_factory=list)
@@ -176,6 +178,8 @@ class Simulation:
         scene = self._scene(dt)
         for law in self.contact_laws:
             law.apply(1, scene)
+        for action in self.after_contact:
+            action(self, dt)
         self._record_traction()
         self._symmetric_forces()
         for m, body in enumerate(self.bodies):

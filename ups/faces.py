@@ -56,6 +56,8 @@ def _condition(boundary: BoundaryType, materials: int, complain: Complain) -> Co
         return None
     width = 3 if label == "Velocity" else 1
     values = _numbers(boundary.value)
+    if width == 3 and values is not None and len(values) == 1:
+        return None  # as in Uintah, a number where a velocity belongs has no effect; lint says so
     if values is None or len(values) != width:
         form = "[vx, vy, vz]" if width == 3 else "a number"
         raise complain("UPS207", f"the <value> of {boundary.label} must be {form}: {boundary.value!r}", boundary)

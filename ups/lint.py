@@ -128,9 +128,11 @@ def _lint_all(decks: list[Path], jobs: int) -> Iterator[tuple[list[Diagnostic], 
         return
     from concurrent.futures import ProcessPoolExecutor
 
+    from ups.rules.old_forms.old_form import all_old_forms
     from ups.rules.rule import all_rules
 
-    all_rules()  # their codes are to be known here too, where the findings arrive
+    all_rules()
+    all_old_forms()  # the codes of both are to be known here too, where the findings arrive
     with ProcessPoolExecutor(min(jobs, len(decks))) as pool:
         yield from pool.map(_lint_one, decks, chunksize=4)
 

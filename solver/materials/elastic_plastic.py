@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from solver.declare import Parameter, SubModel, model
+from solver.declare import model
 from solver.dispatch import implements, inline
 from solver.materials.constitutive import (
     DELETE,
@@ -33,6 +33,40 @@ from solver.materials.failure import plastic_strain_rate
 from solver.materials.flow_stress import flow_stress, hardening_slope
 from solver.materials.melting import melting_temperature
 from solver.materials.melting.constant_melting import ConstantMelting
+from solver.materials.metal_parameters import (
+    BulkModulus,
+    CheckPorosity,
+    CheckStress,
+    ComputeSpecificHeat,
+    CriticalPorosity,
+    CriticalStress,
+    DamageModel,
+    DeviatoricStressModel,
+    DoMelting,
+    EquationOfState,
+    EvolveDamage,
+    EvolvePorosity,
+    FlowModel,
+    Isothermal,
+    MeanPorosity,
+    MeltingTempModel,
+    ModifiedEos,
+    NucleatedFraction,
+    NucleationSpread,
+    NucleationStrain,
+    PorosityDistribution,
+    PorositySpread,
+    ReferenceTemperature,
+    ReturnAlgorithm,
+    ShearModulus,
+    ShearModulusModel,
+    SpecificHeatModel,
+    StabilityCheck,
+    TaylorQuinney,
+    ThermalExpansion,
+    Tolerance,
+    YieldCondition,
+)
 from solver.materials.plasticity_state import PlasticityState, at_plastic_strain, with_thermal_properties
 from solver.materials.return_algorithm import PlasticReturn, PlasticTrial, return_to_yield
 from solver.materials.return_algorithm.radial_return import RadialReturn
@@ -95,79 +129,46 @@ class ElasticPlastic(NamedTuple):
     equation of state. Plastic work, change of volume and artificial viscosity heat the particle.
     """
 
-    bulk_modulus: Annotated[float, Parameter("bulk modulus", unit="Pa", gt=0.0)]
-    shear_modulus: Annotated[float, Parameter("shear modulus", unit="Pa", ge=0.0)]
-    flow_model: Annotated[Any, SubModel("flow_stress")]
-    yield_condition: Annotated[Any, SubModel("yield_condition")] = VonMises()
-    equation_of_state: Annotated[Any, SubModel("equation_of_state")] = DefaultHyper()
-    shear_modulus_model: Annotated[Any, SubModel("shear_modulus")] = ConstantShear()
-    melting_temp_model: Annotated[Any, SubModel("melting")] = ConstantMelting()
-    specific_heat_model: Annotated[Any, SubModel("specific_heat")] = ConstantSpecificHeat()
-    deviatoric_stress_model: Annotated[Any, SubModel("deviatoric_stress")] = HypoElasticDeviator()
-    stability_check: Annotated[Any, SubModel("stability")] = NoCheck()
-    damage_model: Annotated[Any, SubModel("damage")] = NoDamage()
+    bulk_modulus: BulkModulus
+    shear_modulus: ShearModulus
+    flow_model: FlowModel
+    yield_condition: YieldCondition = VonMises()
+    equation_of_state: EquationOfState = DefaultHyper()
+    shear_modulus_model: ShearModulusModel = ConstantShear()
+    melting_temp_model: MeltingTempModel = ConstantMelting()
+    specific_heat_model: SpecificHeatModel = ConstantSpecificHeat()
+    deviatoric_stress_model: DeviatoricStressModel = HypoElasticDeviator()
+    stability_check: StabilityCheck = NoCheck()
+    damage_model: DamageModel = NoDamage()
     """Where older decks give it; today's give it beside the constitutive model."""
-    plastic_convergence_algo: Annotated[Any, SubModel("return_algorithm")] = RadialReturn()
-    taylor_quinney_coeff: Annotated[
-        float, Parameter("part of the plastic work that becomes heat", ge=0.0, le=1.0)
-    ] = 0.9
-    isothermal: Annotated[bool, Parameter("whether the material's own heating is left out")] = False
-    compute_specific_heat: Annotated[
-        bool, Parameter("whether specific_heat_model is used instead of the material's specific_heat")
-    ] = False
-    do_melting: Annotated[bool, Parameter("whether shear stress vanishes above melting")] = True
-    evolve_porosity: Annotated[bool, Parameter("whether voids nucleate and grow")] = True
-    initial_mean_porosity: Annotated[float, Parameter("mean porosity at the start", ge=0.0, lt=1.0)] = 0.002
-    initial_std_porosity: Annotated[
-        float, Parameter("standard deviation of the porosity at the start", ge=0.0)
-    ] = 0.002
-    initial_porosity_distrib: Annotated[Any, SubModel("distribution")] = Constant()
-    critical_porosity: Annotated[float, Parameter("porosity at failure", gt=0.0, le=1.0)] = 0.5
-    frac_nucleation: Annotated[
-        float, Parameter("volume fraction of the particles at which voids nucleate", ge=0.0)
-    ] = 0.1
-    meanstrain_nucleation: Annotated[float, Parameter("mean plastic strain of nucleation")] = 0.3
-    stddevstrain_nucleation: Annotated[
-        float, Parameter("standard deviation of the plastic strain of nucleation", gt=0.0)
-    ] = 0.1
-    check_TEPLA_failure_criterion: Annotated[
-        bool, Parameter("whether a particle fails at the critical porosity")
-    ] = True
-    check_max_stress_failure: Annotated[
-        bool, Parameter("whether a particle fails at the critical stress")
-    ] = False
-    critical_stress: Annotated[float, Parameter("largest principal stress at failure", unit="Pa", gt=0.0)] = (
-        math.inf
-    )
-    tolerance: Annotated[
-        float, Parameter("tolerance of the flow stress", ignored="no flow model of Uintah's uses it")
-    ] = 1.0e-10
-    initial_material_temperature: Annotated[
-        float,
-        Parameter(
-            "temperature of the reference state",
-            unit="K",
-            ignored="internal energy is integrated, not derived from temperature",
-        ),
-    ] = 294.0
-    coeff_thermal_expansion: Annotated[
-        float,
-        Parameter("linear thermal expansion", unit="1/K", ignored="only the implicit integrator has it"),
-    ] = 0.0
-    useModifiedEOS: Annotated[
-        bool,
-        Parameter(
-            "a power law instead of the bulk modulus in expansion, beside a gas",
-            ignored="only the coupled gas-solid method asks the material for its density at a pressure",
-        ),
-    ] = False
-    evolve_damage: Annotated[
-        bool, Parameter("whether damage evolves", ignored="it does where there is a damage_model")
-    ] = True
+    plastic_convergence_algo: ReturnAlgorithm = RadialReturn()
+    taylor_quinney_coeff: TaylorQuinney = 0.9
+    isothermal: Isothermal = False
+    compute_specific_heat: ComputeSpecificHeat = False
+    do_melting: DoMelting = True
+    evolve_porosity: EvolvePorosity = True
+    initial_mean_porosity: MeanPorosity = 0.002
+    initial_std_porosity: PorositySpread = 0.002
+    initial_porosity_distrib: PorosityDistribution = Constant()
+    critical_porosity: CriticalPorosity = 0.5
+    frac_nucleation: NucleatedFraction = 0.1
+    meanstrain_nucleation: NucleationStrain = 0.3
+    stddevstrain_nucleation: NucleationSpread = 0.1
+    check_TEPLA_failure_criterion: CheckPorosity = True
+    check_max_stress_failure: CheckStress = False
+    critical_stress: CriticalStress = math.inf
+    tolerance: Tolerance = 1.0e-10
+    initial_material_temperature: ReferenceTemperature = 294.0
+    coeff_thermal_expansion: ThermalExpansion = 0.0
+    useModifiedEOS: ModifiedEos = False
+    evolve_damage: EvolveDamage = True
     failure_is_checked: bool = False
     """Whether the material has an erosion algorithm, without which particles do not fail."""
-    adds_to_stress = True
-    """The deviator of a step is added to that of the step before."""
+
+    @property
+    def adds_to_stress(self) -> bool:
+        """The deviator of a step is added to that of the step before."""
+        return True
 
     @property
     def State(self) -> type:  # noqa: N802 - the class attribute of other models
@@ -176,17 +177,23 @@ class ElasticPlastic(NamedTuple):
 
     def faults(self) -> list[tuple[str, str]]:
         """Fields that do not go together, each with what is wrong."""
-        found = []
-        porous = isinstance(self.yield_condition, Gurson | Rousselier)
-        if porous and isinstance(self.plastic_convergence_algo, RadialReturn):
-            found.append(("plastic_convergence_algo", "a yield condition with porosity needs biswajit"))
+        found = metal_faults(self)
         viscous = isinstance(self.deviatoric_stress_model, HypoViscoElasticDeviator)
         if viscous and not isinstance(self.shear_modulus_model, ConstantShear):
             message = "the elements of hypoViscoElastic have their own, constant moduli: use constant_shear"
             found.append(("shear_modulus_model", message))
-        if self.check_max_stress_failure and math.isinf(self.critical_stress):
-            found.append(("critical_stress", "check_max_stress_failure needs critical_stress"))
         return found
+
+
+def metal_faults(model: Any) -> list[tuple[str, str]]:
+    """Fields of an elastic-plastic metal that do not go together, each with what is wrong."""
+    found = []
+    porous = isinstance(model.yield_condition, Gurson | Rousselier)
+    if porous and isinstance(model.plastic_convergence_algo, RadialReturn):
+        found.append(("plastic_convergence_algo", "a yield condition with porosity needs biswajit"))
+    if model.check_max_stress_failure and math.isinf(model.critical_stress):
+        found.append(("critical_stress", "check_max_stress_failure needs critical_stress"))
+    return found
 
 
 @cache
@@ -263,14 +270,19 @@ def elastic_plastic_stress(
     """Stress, heating, internal energy and failure of one particle, in Uintah's order of operations."""
     J = determinant(point.deformation_gradient)
     if not (0.0 < J <= LARGEST_EXPANSION):
-        # As in Uintah, a particle that is given up still holds back the next step by waves in what it became.
-        modulus = model.bulk_modulus + 4.0 * model.shear_modulus / 3.0
-        c = math.sqrt(modulus * J / material.density) if 0.0 < J < math.inf else 0.0
-        return StressUpdate(isotropic(0.0), c, 0.0, 0.0, 0.0, DELETE)
+        return given_up(model, J, material)
     motion = kinematics(point, tensor_at(state.rotation, p), material.density / J)
     old_stress = to_material(motion.old_rotation, point.stress)
     start = plasticity_state(model, state, p, point, material, motion, trace(old_stress) / 3.0)
-    flow = deviatoric_flow(model, state, p, start, motion, old_stress, step.dt)
+    trial = deviator(old_stress) + stress_increment(
+        model.deviatoric_stress_model,
+        state[OWN_FIELDS:],
+        p,
+        motion.rate_deviator,
+        start.shear_modulus,
+        step.dt,
+    )
+    flow = deviatoric_flow(model, state, p, start, motion, old_stress, trial, start.shear_modulus, step.dt)
     dissipation = 0.0
     if not flow.melted:
         elastic_rate = motion.rate_deviator - flow.plastic_increment / step.dt
@@ -319,6 +331,17 @@ def elastic_plastic_stress(
 
 
 @inline
+def given_up(model: Any, J: float, material: Material) -> StressUpdate:
+    """The answer for a particle of impossible volume: it is removed.
+
+    As in Uintah it still holds back the next step by waves in what it became, where that is a number.
+    """
+    modulus = model.bulk_modulus + 4.0 * model.shear_modulus / 3.0
+    c = math.sqrt(modulus * J / material.density) if 0.0 < J < math.inf else 0.0
+    return StressUpdate(isotropic(0.0), c, 0.0, 0.0, 0.0, DELETE)
+
+
+@inline
 def kinematics(point: Point, old_rotation: Tensor, density: float) -> Kinematics:
     """Rate of deformation in the frame that R of the old deformation gradient turns with."""
     rate = to_material(old_rotation, symmetric(point.velocity_gradient))
@@ -329,7 +352,7 @@ def kinematics(point: Point, old_rotation: Tensor, density: float) -> Kinematics
 
 @inline
 def plasticity_state(
-    model: ElasticPlastic,
+    model: Any,
     state: Any,
     p: int,
     point: Point,
@@ -362,29 +385,24 @@ def plasticity_state(
 
 @inline
 def deviatoric_flow(
-    model: ElasticPlastic,
+    model: Any,
     state: Any,
     p: int,
     start: PlasticityState,
     motion: Kinematics,
     old_stress: Tensor,
+    trial: Tensor,
+    stiffness: float,
     dt: float,
 ) -> Flow:
     """Deviatoric stress: none when melted, the trial inside the yield surface, else on the surface.
 
-    The yield surface is that of the plastic strain which the old plastic strain rate leads to.
+    ``trial`` is the deviator of an elastic step, from which plastic strain takes 2 ``stiffness`` times
+    itself. The yield surface is that of the plastic strain which the old plastic strain rate leads to.
     """
     zero = isotropic(0.0)
     if model.do_melting and start.temperature > start.melt_temperature:
         return Flow(zero, False, True, start.plastic_strain, 0.0, 0.0, 0.0, zero)
-    trial = deviator(old_stress) + stress_increment(
-        model.deviatoric_stress_model,
-        state[OWN_FIELDS:],
-        p,
-        motion.rate_deviator,
-        start.shear_modulus,
-        dt,
-    )
     expected_strain = start.plastic_strain + start.plastic_strain_rate * dt
     expected = at_plastic_strain(start, expected_strain, start.plastic_strain_rate)
     sigma_y = flow_stress(model.flow_model, expected)
@@ -402,6 +420,7 @@ def deviatoric_flow(
         sigma_y,
         surface.strength,
         porosity,
+        stiffness,
     )
     end = return_to_yield(model.plastic_convergence_algo, model.flow_model, start, plastic_trial, dt)
     return plastic_flow(end)
@@ -424,7 +443,7 @@ def plastic_flow(end: PlasticReturn) -> Flow:
 
 @inline
 def heating(
-    model: ElasticPlastic,
+    model: Any,
     start: PlasticityState,
     flow: Flow,
     motion: Kinematics,
@@ -445,7 +464,7 @@ def heating(
 
 
 @inline
-def nucleation(model: ElasticPlastic, plastic_strain: float) -> float:
+def nucleation(model: Any, plastic_strain: float) -> float:
     """Porosity that nucleates per unit of plastic strain (Chu and Needleman 1980)."""
     z = (plastic_strain - model.meanstrain_nucleation) / model.stddevstrain_nucleation
     density = math.exp(-0.5 * z * z) / (model.stddevstrain_nucleation * math.sqrt(2.0 * math.pi))
@@ -453,9 +472,7 @@ def nucleation(model: ElasticPlastic, plastic_strain: float) -> float:
 
 
 @inline
-def grown_porosity(
-    model: ElasticPlastic, porosity: float, flow: Flow, motion: Kinematics, dt: float
-) -> float:
+def grown_porosity(model: Any, porosity: float, flow: Flow, motion: Kinematics, dt: float) -> float:
     """Porosity after a plastic step: growth (1 - f) tr(d) in expansion and nucleation by shear."""
     if not (flow.plastic and model.evolve_porosity):
         return porosity
@@ -466,7 +483,7 @@ def grown_porosity(
 
 @inline
 def fails(
-    model: ElasticPlastic,
+    model: Any,
     start: PlasticityState,
     flow: Flow,
     stress: Tensor,
@@ -490,7 +507,7 @@ def fails(
 
 @inline
 def is_unstable(
-    model: ElasticPlastic,
+    model: Any,
     start: PlasticityState,
     flow: Flow,
     stress: Tensor,

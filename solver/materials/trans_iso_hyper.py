@@ -131,7 +131,8 @@ class ViscoTransIsoHyper(NamedTuple):
     """The material of trans_iso_hyper with a fading memory of up to six terms.
 
     sigma = sigma_e + sum y_k h_k, h_k' + h_k / t_k = sigma_e', integrated exactly for a constant rate of the
-    elastic stress in each step (Puso and Weiss, J. Biomech. Eng. 120, 1998).
+    elastic stress in each step (Puso and Weiss, J. Biomech. Eng. 120, 1998). As in Uintah the memory does not
+    turn with the body.
     """
 
     bulk_modulus: BulkModulus

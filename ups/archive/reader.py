@@ -17,6 +17,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -109,6 +110,7 @@ class Archive:
             raise ArchiveError(self.path, "not an archive: there is no index.xml", advice="check the path")
         self.index: ArchiveIndex = read_index(self.path / "index.xml")
         self._stored: OrderedDict[int, StoredTimestep] = OrderedDict()
+        self._lock = Lock()
 
     def __repr__(self) -> str:
         return f"Archive({str(self.path)!r}, {len(self.timesteps)} time steps)"
@@ -376,6 +378,10 @@ class Archive:
 
     def _step(self, step: int) -> StoredTimestep:
         timestep = self.timestep(step)
+        with self._lock:  # steps may be read by several threads
+            return self._opened(timestep)
+
+    def _opened(self, timestep: Timestep) -> StoredTimestep:
         stored = self._stored.get(timestep.step)
         if stored is None:
             beside = self.path / timestep.href

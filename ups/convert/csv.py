@@ -17,7 +17,7 @@ import numpy as np
 
 from ups.archive import ArchiveError, GridField, Variable
 from ups.archive.variables import CELL, FACES, NODE
-from ups.convert.registry import Format, Progress, register
+from ups.convert.registry import Format, Options, register
 from ups.convert.selection import Selection, as_rows
 
 _TABLES = {NODE: "nodes", CELL: "cells", FACES[0]: "xfaces", FACES[1]: "yfaces", FACES[2]: "zfaces"}
@@ -84,7 +84,7 @@ def _grid_columns(
     return columns
 
 
-def write(selection: Selection, out: Path, progress: Progress) -> list[Path]:
+def write(selection: Selection, out: Path, options: Options) -> list[Path]:
     """Write the selection as tables; see the module for their names."""
     position = selection.archive.index.particle_position
     on_particles = [v for v in selection.variables if v.is_particle and v.name != position]
@@ -105,7 +105,7 @@ def write(selection: Selection, out: Path, progress: Progress) -> list[Path]:
             tables[kind] = TableFile(file, head + [name for variable in named for name in headings(variable)])
         for done, timestep in enumerate(selection.timesteps, 1):
             _write_step(selection, timestep.step, timestep.time, tables, on_particles, on_grid)
-            progress(done, len(selection.timesteps))
+            options.progress(done, len(selection.timesteps))
     return list(paths.values())
 
 
@@ -122,8 +122,9 @@ def _write_step(
     for level in selection.archive.grid(step).levels if set(tables) - {"particles"} else ():
         grouped: dict[tuple[str, int], dict[Variable, GridField]] = {}
         for material, grid_field in selection.grid_fields(step, level.index):
-            declared = selection.archive.variables[grid_field.variable.name]
-            grouped.setdefault((declared.container, material), {})[declared] = grid_field
+            declared = next(v for v in selection.variables if v.name == grid_field.variable.name)
+            cropped = selection.cropped(grid_field)
+            grouped.setdefault((declared.container, material), {})[declared] = cropped
         for (container, material), fields in grouped.items():
             columns = _grid_columns(step, time, level.index, material, fields, on_grid[container])
             tables[container].extend(columns)

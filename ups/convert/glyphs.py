@@ -18,20 +18,40 @@ def particle_edges(archive: Archive, step: int, material: int, level: Level) -> 
     """Edge vectors of the boxes that particles fill, the columns of matrices of shape (n, 3, 3).
 
     A particle starts as a cube and is deformed by its ``p.deformationMeasure`` F, of a size that gives it
-    its ``p.volume``. Without F the box stays a cube; without a volume it is that of a particle of which
-    a cell holds eight.
+    its ``p.volume``; in a grid of one layer of cells with one layer of particles it is as thick as the
+    layer. Without F the box is not deformed; without a volume it is half a cell wide.
     """
-    stored = archive.labels(step)
+    thick = np.array(level.spacing)
+    layered = _layered_axes(archive, step, material, level)
+    start = np.where(layered, thick, thick / 2.0)
     count = archive.particle_count(step, material)
     deformation = np.broadcast_to(np.eye(3), (count, 3, 3))
-    if DEFORMATION in stored and material in archive.materials(step, DEFORMATION):
+    if _is_stored(archive, step, DEFORMATION, material):
         deformation = archive.particles(step, DEFORMATION, material)
-    if VOLUME not in stored or material not in archive.materials(step, VOLUME):
-        return deformation * (np.array(level.spacing) / 2.0)
+    if not _is_stored(archive, step, VOLUME, material) or layered.all():
+        return deformation * start
     volume = archive.particles(step, VOLUME, material)
     with np.errstate(divide="ignore", invalid="ignore"):
-        side = np.cbrt(np.abs(volume / np.linalg.det(deformation)))
-    return deformation * np.where(np.isfinite(side), side, 0.0)[:, None, None]
+        free = np.abs(volume / np.linalg.det(deformation)) / np.prod(thick[layered])
+        side = free ** (1.0 / np.count_nonzero(~layered))
+    side = np.where(np.isfinite(side), side, 0.0)
+    return deformation * np.where(layered, thick, side[:, None])[:, None, :]
+
+
+def _is_stored(archive: Archive, step: int, label: str, material: int) -> bool:
+    return label in archive.labels(step) and material in archive.materials(step, label)
+
+
+def _layered_axes(archive: Archive, step: int, material: int, level: Level) -> np.ndarray:
+    """Axes along which the grid has one cell and the material one particle."""
+    single = np.array(level.interior.shape) == 1
+    position = archive.index.particle_position
+    if not single.any() or not _is_stored(archive, step, position, material):
+        return np.zeros(3, dtype=bool)
+    positions = archive.particles(step, position, material)
+    if not len(positions):
+        return single
+    return single & (np.ptp(positions, axis=0) < 1e-6 * np.array(level.spacing))
 
 
 def box_corners(positions: np.ndarray, edges: np.ndarray) -> np.ndarray:

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ups.convert.registry import Format, Progress, register
+from ups.convert.registry import Format, Options, register
 from ups.convert.selection import Selection
 
 
-def write(selection: Selection, out: Path, progress: Progress) -> list[Path]:
+def write(selection: Selection, out: Path, options: Options) -> list[Path]:
     """Write the selection into one file that `numpy.load` reads."""
     out.parent.mkdir(parents=True, exist_ok=True)
     partial = out.with_name(out.name + ".partial")
@@ -35,14 +35,15 @@ def write(selection: Selection, out: Path, progress: Progress) -> list[Path]:
             for variable in selection.variables:
                 if variable.is_particle:
                     for material in selection.materials_of(step, variable.name):
-                        values = selection.archive.particles(step, variable.name, material)
+                        values = selection.of_material(step, variable.name, material)
                         put(f"{place}/{material}/{variable.name}", values)
             for level in selection.archive.grid(step).levels if selection.has_grid else ():
-                for material, grid_field in selection.grid_fields(step, level.index):
+                for material, whole in selection.grid_fields(step, level.index):
+                    grid_field = selection.cropped(whole)
                     key = f"{place}/l{level.index}/{material}/{grid_field.variable.name}"
                     put(key, grid_field.values)
                     put(f"{key}/low", np.array(grid_field.origin))
-            progress(done, len(selection.timesteps))
+            options.progress(done, len(selection.timesteps))
     partial.replace(out)
     return [out]
 

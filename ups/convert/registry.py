@@ -13,6 +13,29 @@ Progress = Callable[[int, int], None]
 """Called after each time step with the number done and the number of all."""
 
 
+def _silent(done: int, total: int) -> None:
+    """Report to nobody."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How to convert.
+
+    Attributes
+    ----------
+    progress
+        Called after each time step.
+    jobs
+        Time steps that are worked on at the same time, where the format has a file for each.
+    glyphs
+        Whether particles become boxes, deformed as their material is, where the format can hold them.
+    """
+
+    progress: Progress = _silent
+    jobs: int = 1
+    glyphs: bool = False
+
+
 @dataclass(frozen=True)
 class Format:
     """A format that archives are converted to.
@@ -30,7 +53,7 @@ class Format:
 
     name: str
     suffixes: tuple[str, ...]
-    write: Callable[[Selection, Path, Progress], list[Path]]
+    write: Callable[[Selection, Path, Options], list[Path]]
 
 
 FORMATS: dict[str, Format] = {}

@@ -68,7 +68,7 @@ class ArchiveSummary:
     unsupported
         Types of variables that cannot be read, by label.
     histories
-        Name, number of lines, first and last value of each history of a number.
+        Name, number of lines, last value and unit of each history.
     checkpoints
         Steps of the checkpoints.
     problems
@@ -85,7 +85,7 @@ class ArchiveSummary:
     step: int | None
     variables: tuple[VariableSummary, ...]
     unsupported: dict[str, str]
-    histories: tuple[tuple[str, int, str], ...]
+    histories: tuple[tuple[str, int, str, str], ...]
     checkpoints: tuple[int, ...]
     problems: tuple[ArchiveError, ...]
 
@@ -211,7 +211,7 @@ def _summary(variable: Variable, material: int, parts: list[np.ndarray], holes: 
     )
 
 
-def _histories(archive: Archive) -> list[tuple[str, int, str]]:
+def _histories(archive: Archive) -> list[tuple[str, int, str, str]]:
     found = []
     for name in archive.reductions:
         try:
@@ -219,7 +219,7 @@ def _histories(archive: Archive) -> list[tuple[str, int, str]]:
         except ArchiveError:
             continue  # it is among the problems
         last = "" if not len(history.values) else " ".join(f"{v:.9g}" for v in np.ravel(history.values[-1]))
-        found.append((name, len(history.values), last))
+        found.append((name, len(history.values), last, unit_of(history.name)))
     return found
 
 
@@ -230,7 +230,11 @@ def render(summary: ArchiveSummary) -> str:
         f"  written {summary.date or 'at an unknown time'} by {summary.processes} "
         f"process{'es' * (summary.processes != 1)}, {_readable(summary.size)} on disk"
     )
-    lines += ["", f"{len(summary.timesteps)} time steps", *_step_lines(summary.timesteps)]
+    lines += [
+        "",
+        f"{len(summary.timesteps)} time step{'s' * (len(summary.timesteps) != 1)}",
+        *_step_lines(summary.timesteps),
+    ]
     if summary.checkpoints:
         lines.append(f"  checkpoints at the steps {', '.join(map(str, summary.checkpoints))}")
     lines += ["", "grid", *(_level_line(level) for level in summary.levels)]
@@ -244,11 +248,11 @@ def render(summary: ArchiveSummary) -> str:
     if summary.histories:
         lines += ["", "histories"]
         lines += _columns(
-            [(n, f"{count} lines", f"last {v}" if v else "", unit_of(n)) for n, count, v in summary.histories]
+            [(n, f"{count} lines", f"last {v}" if v else "", u) for n, count, v, u in summary.histories]
         )
     lines.append("")
     if summary.problems:
-        lines.append(f"{len(summary.problems)} problems")
+        lines.append(f"{len(summary.problems)} problem{'s' * (len(summary.problems) != 1)}")
         lines += [f"  {problem}" for problem in summary.problems]
     else:
         lines.append("nothing is missing or cut off")
@@ -266,7 +270,8 @@ def _level_line(level: Level) -> str:
     spacing = ", ".join(f"{h:.6g}" for h in level.spacing)
     low, high = level.bounds(level.interior)
     ends = " to ".join("[" + ", ".join(f"{x:.6g}" for x in corner) + "]" for corner in (low, high))
-    line = f"  level {level.index}: {cells} cells of [{spacing}] m, {ends} m, {len(level.patches)} patches"
+    patches = f"{len(level.patches)} patch{'es' * (len(level.patches) != 1)}"
+    line = f"  level {level.index}: {cells} cells of [{spacing}] m, {ends} m, {patches}"
     axes = [axis for axis, periodic in zip("xyz", level.periodic, strict=True) if periodic]
     extra = f", extra cells {list(level.extra_cells)}" if any(level.extra_cells) else ""
     return line + extra + (f", periodic in {', '.join(axes)}" if axes else "")
@@ -290,7 +295,7 @@ def _variable_row(variable: VariableSummary) -> tuple[str, ...]:
 
 
 def _numbers(values: Sequence[float]) -> str:
-    text = ", ".join(f"{value:.6g}" for value in values)
+    text = ", ".join(f"{value:.6g}" if isinstance(value, float) else str(value) for value in values)
     return f"[{text}]" if len(values) > 1 else text
 
 

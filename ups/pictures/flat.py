@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
 _DPI = 120
 _WIDTH = 8.0
 """Inches."""
+
+_LETTERS = 11
+"""Letters of the title on an inch."""
 
 _MOST_BOXES = 200_000
 """Particles beyond this many are drawn as dots."""
@@ -38,7 +42,7 @@ def draw(view: View, step: int, shown: Range) -> Figure:
 
     figure = Figure(figsize=_size(view, shown), dpi=_DPI, layout="constrained")
     axes = figure.add_subplot()
-    axes.set_title(view.title(step), fontsize=10)
+    axes.set_title(textwrap.fill(view.title(step), int(_LETTERS * figure.get_figwidth())), fontsize=10)
     if len(view.axes) == 1:
         _draw_profile(view, step, axes, shown)
     else:

@@ -77,8 +77,12 @@ def _write_gif(out: Path, frames: Iterator[np.ndarray], frames_per_second: float
     """Write frames as they come; all share the colours of the first, or the bar would flicker."""
     from PIL import Image
 
-    first = Image.fromarray(next(frames)).quantize(256)
-    rest = (Image.fromarray(frame).quantize(palette=first, dither=Image.Dither.NONE) for frame in frames)
+    beginning = Image.fromarray(next(frames))
+    colours = (beginning.quantize(254).getpalette() or [])[: 3 * 254] + [255, 255, 255, 0, 0, 0]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(colours)  # white and black, which quantising blends with their neighbours, stay pure
+    first = beginning.quantize(palette=palette, dither=Image.Dither.NONE)
+    rest = (Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
     duration = max(20, round(1000.0 / frames_per_second))
     first.save(out, save_all=True, append_images=rest, duration=duration, loop=0)
 

@@ -11,6 +11,7 @@ from ups.archive import Archive, ArchiveError, GridField, Level, Variable
 from ups.archive.layout import FloatVector
 from ups.archive.measures import Named
 from ups.archive.units import plain_name, with_unit
+from ups.archive.variables import NODE
 from ups.convert.glyphs import particle_edges, positions_of
 
 _PREFERRED = (
@@ -130,7 +131,8 @@ class View:
             advice = f"its materials are: {', '.join(map(str, stored))}"
             raise ArchiveError(archive.path, f"{label} is not stored for material {absent[0]}", advice=advice)
         if named.source.is_grid and materials is None:
-            wanted = (_together(archive, step, stored),)
+            together = named.source.container == NODE and _together(archive, step, stored)
+            wanted = (stored[-1] if together else stored[0],)
         levels = archive.grid(step).levels
         if not 0 <= level < len(levels):
             raise ArchiveError(archive.path, f"there is no level {level}, only {len(levels)} levels")
@@ -299,11 +301,11 @@ def _scalar(archive: Archive, named: Named) -> Named:
     return archive.find(f"{declared.name}:{measure}")
 
 
-def _together(archive: Archive, step: int, stored: Sequence[int]) -> int:
-    """Material that stands for all together where there is one, as MPM stores nodes; else the first."""
+def _together(archive: Archive, step: int, stored: Sequence[int]) -> bool:
+    """Whether the last material of a nodal variable stands for all together, one more than have particles."""
     position = archive.index.particle_position
     own = archive.materials(step, position) if position in archive.labels(step) else []
-    return stored[-1] if own and stored[-1] == own[-1] + 1 else stored[0]
+    return bool(own) and stored[-1] == own[-1] + 1
 
 
 def _axes(archive: Archive, level: Level, plane: Slice | None) -> tuple[int, ...]:

@@ -13,7 +13,8 @@ class DataFile(Rule):
     """A data file that the deck names is not there.
 
     **Why.** Profiles of prescribed motion, inserted particles and cohesive segments come from files. They are
-    looked for in the working directory, beside the deck, and in the folders above it.
+    looked for in the working directory, beside the deck, and in the folders above it. A run stops where one is
+    missing; a check only warns, since it may be made elsewhere.
 
     **Example.** ``<PrescribedDeformationFile>inputs/MPM/twist.txt</PrescribedDeformationFile>``
 
@@ -39,9 +40,11 @@ class DataFile(Rule):
             deck.deck.reader.open_file(element.text)
         except FileNotFoundError as problem:
             nearest = _nearest(deck, element.text)
-            yield self.error(str(problem), element.texts[0], f"did you mean {nearest}?" if nearest else None)
+            yield self.warning(
+                str(problem), element.texts[0], f"did you mean {nearest}?" if nearest else None
+            )
         except (OSError, ValueError) as problem:
-            yield self.error(f"{element.text!r}: {problem}", element.texts[0])
+            yield self.warning(f"{element.text!r}: {problem}", element.texts[0])
 
 
 def _nearest(deck: DeckView, name: str) -> str | None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ups.diagnostics import Diagnostic
+from ups.element import Element
 from ups.rules.rule import DeckView, Rule
 
 
@@ -18,7 +19,7 @@ class GeometryOutside(Rule):
     **Example.** A grid from 0 to 1 and ``<box> <min>[2, 0, 0]</min> <max>[3, 1, 1]</max> </box>``, as when
     the grid is in metres and the body in millimetres.
 
-    Gases are not looked at: one that forms later is put outside the grid on purpose.
+    A gas that forms later is put outside the grid on purpose; suppress the warning there.
 
     **Repair.** Move the body or extend the grid; look at the units of both.
     """
@@ -32,7 +33,11 @@ class GeometryOutside(Rule):
         if domain is None:
             return
         loads = [child for section in deck.all("PhysicalBC/MPM") for child in section.children]
-        bodies = [g for owner in (*deck.particle_materials, *loads) for g in owner.all("geom_object")]
+        bodies = [
+            g
+            for owner in (*deck.particle_materials, *deck.gas_materials, *loads)
+            for g in owner.all("geom_object")
+        ]
         for body in bodies:
             for shape in body.children:
                 bounds = _bounds(deck.record(shape))
@@ -48,9 +53,8 @@ class GeometryOutside(Rule):
                 ]
                 if outside:
                     span = f"{_point(domain.lower)} to {_point(domain.upper)}"
-                    message = (
-                        f"<{shape.tag}> lies outside the grid in {', '.join(outside)}: the grid spans {span}"
-                    )
+                    where = ", ".join(outside)
+                    message = f"{_name(shape)} lies outside the grid in {where}: the grid spans {span}"
                     yield self.warning(message, shape)
 
 
@@ -61,6 +65,11 @@ def _bounds(shape: Any) -> tuple[Any, Any] | None:
     except (AttributeError, NotImplementedError, ValueError, ArithmeticError, OSError):
         return None
     return (lower, upper) if all(b >= a for a, b in zip(lower, upper, strict=True)) else None
+
+
+def _name(shape: Element) -> str:
+    label = shape.attributes.get("label")
+    return f"<{shape.tag}>" if label is None else f"<{shape.tag}> {label.value!r}"
 
 
 def _point(point: list[float]) -> str:

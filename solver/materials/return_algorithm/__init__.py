@@ -34,6 +34,8 @@ class PlasticTrial(NamedTuple):
     strength: float
     """Equivalent stress of the yield surface at that flow stress."""
     porosity: float
+    stiffness: float
+    """Half of what a unit of plastic strain takes from the stress: the shear modulus, about."""
 
 
 class PlasticReturn(NamedTuple):

@@ -25,7 +25,9 @@ class RadialReturn(NamedTuple):
 
     Solves |s_trial| - sqrt(2/3) sigma_y(ep + sqrt(2/3) dg, sqrt(2/3) dg / dt) - 2 mu dg = 0 for the plastic
     multiplier dg, starting from the whole strain rate. Start and tolerances are Uintah's, whose answer
-    depends on them.
+    depends on them. A flow stress whose slope is infinite at zero plastic strain (ep^n with n < 1) makes the
+    iteration wander where the first plastic strain is below 1e-5: the rounding of the trial stress decides
+    where it stops, with the stress off by up to a part in a thousand and ep by up to 1e-5.
     """
 
 
@@ -41,9 +43,9 @@ def radial_return(
     current = at_plastic_strain(state, state.plastic_strain, state.strain_rate)
     for _ in range(MOST_ITERATIONS):
         sigma_y = flow_stress(flow_model, current)
-        excess = trial_norm - math.sqrt(two_thirds) * sigma_y - 2.0 * state.shear_modulus * multiplier
+        excess = trial_norm - math.sqrt(two_thirds) * sigma_y - 2.0 * trial.stiffness * multiplier
         hardening = rate_slope(flow_model, current) / dt + hardening_slope(flow_model, current)
-        change = excess / (two_thirds * hardening + 2.0 * state.shear_modulus)
+        change = excess / (two_thirds * hardening + 2.0 * trial.stiffness)
         multiplier += change
         strain = max(math.sqrt(two_thirds) * multiplier, 0.0)
         current = at_plastic_strain(state, state.plastic_strain + strain, strain / dt)
@@ -51,7 +53,7 @@ def radial_return(
             break
     direction = trial.stress_deviator / trial_norm
     return PlasticReturn(
-        stress_deviator=trial.stress_deviator - direction * (2.0 * state.shear_modulus * multiplier),
+        stress_deviator=trial.stress_deviator - direction * (2.0 * trial.stiffness * multiplier),
         plastic_strain=current.plastic_strain,
         plastic_strain_rate=current.plastic_strain_rate,
         flow_stress=flow_stress(flow_model, current),

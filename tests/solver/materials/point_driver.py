@@ -87,7 +87,9 @@ class Driver:
         old_volume = p.volume[0]
         increment = np.asarray(gradient) @ np.linalg.inv(old_gradient[0])
         p.deformation_gradient[0] = gradient
-        p.velocity_gradient[0] = (logarithm(increment[None])[0] if self.exact_rates else increment - np.eye(3)) / dt
+        p.velocity_gradient[0] = (
+            logarithm(increment[None])[0] if self.exact_rates else increment - np.eye(3)
+        ) / dt
         p.volume[0] = old_volume * np.linalg.det(increment)
         step = Step(dt, self.time, self.length, self.viscosity, 0.2, 2.0, False)
         update = compiled_update() if self.compiled else update_particle

@@ -40,6 +40,7 @@ from solver.materials.equation_of_state.mie_gruneisen import MieGruneisen
 from solver.materials.erosion.zero_stress import ZeroStress
 from solver.materials.failure import new_failure
 from solver.materials.flow_stress.johnson_cook import JohnsonCook
+from solver.materials.hyperelastic_plastic import HyperElasticPlastic
 from solver.materials.hypo_elastic import HypoElastic
 from solver.materials.melting.constant_melting import ConstantMelting
 from solver.materials.melting.linear_melting import LinearMelting
@@ -119,6 +120,12 @@ class Choice(NamedTuple):
             compute_specific_heat=True,
             failure_is_checked=True,
         )
+
+    @property
+    def hyperelastic(self) -> HyperElasticPlastic:
+        """The same parts in the hyperelastic-plastic material, which has an elastic deviator of its own."""
+        fields = self.model._asdict()
+        return HyperElasticPlastic(**{name: fields[name] for name in HyperElasticPlastic._fields})
 
     @property
     def refusals(self) -> list[str]:
@@ -236,13 +243,27 @@ def test_any_choice_runs_or_is_refused(flow_model):
             sums = specimen.advance(velocity_gradient, DT)
             assert sums.finite, choice
             particles, state = specimen.particles, specimen.state
-            assert np.isfinite(particles.temperature[0]) and particles.temperature[0] > 0.0, choice
+            assert 0.0 < particles.temperature[0] < np.inf, choice
             np.testing.assert_allclose(particles.stress[0], particles.stress[0].T, atol=1e-3)
             assert particles.localized[0] in (0, 1)
             assert state.plastic_strain[0] >= strain, choice
             strain = state.plastic_strain[0]
         # a particle that has failed by its stress need not have flowed before
         assert 0.0 < strain < 0.1 or particles.localized[0], choice
+
+
+@pytest.mark.parametrize("flow_model", MODELS["flow_stress"], ids=lambda model: type(model).__name__)
+def test_any_choice_runs_in_the_hyperelastic_material(flow_model):
+    for choice in choices():
+        model = choice.hyperelastic
+        if choice.flow_stress is not flow_model or model.faults():
+            continue
+        damage = for_constitutive_model(choice.damage, model)
+        specimen = Specimen(model, damage)
+        for velocity_gradient in PATH:
+            assert specimen.advance(velocity_gradient, DT).finite, choice
+        assert specimen.particles.temperature[0] > 0.0
+        assert specimen.state.plastic_strain[0] > 0.0 or specimen.particles.localized[0], choice
 
 
 @pytest.mark.parametrize("index", [0, 57, 171, 340])
@@ -340,7 +361,8 @@ def test_a_deck_is_told_at_the_line_of_the_damage_model():
     (problem,) = list(diagnostics)
     assert "plastic strain" in problem.message
     assert problem.code == "UPS502"
-    assert problem.location is not None and problem.location.line == 6
+    assert problem.location is not None
+    assert problem.location.line == 6
 
 
 @pytest.mark.parametrize("compiled", [False, True], ids=["plain", "compiled"])

@@ -35,6 +35,7 @@ def trial_of(start, flow_stress_now, old_rate=1.0e9):
         flow_stress=flow_stress_now,
         strength=flow_stress_now,
         porosity=0.0,
+        stiffness=G,
     )
 
 

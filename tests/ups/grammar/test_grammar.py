@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -126,3 +128,28 @@ def test_the_schema_takes_the_decks_that_uintah_runs(schema, monkeypatch):
         if not schema.validate(tree):
             refused.append(name)
     assert refused == ["MPMICE/InductionTime.ups"]
+
+
+def test_a_section_may_require_what_its_base_leaves_open():
+    from ups.grammar.ice_material import GasRegion, PlainRegion
+
+    required = {record: {i.tag for i in fields(record) if i.required} for record in (PlainRegion, GasRegion)}
+    assert required[PlainRegion] == set()
+    assert required[GasRegion] == {"res", "velocity", "temperature", "density", "pressure"}
+
+
+def test_a_model_is_found_without_loading_its_whole_family():
+    program = (
+        "import sys, ups.deck; from solver.declare import FAMILIES; "
+        "family = FAMILIES['constitutive_model']; "
+        "names = [family.find(n).__name__ for n in ('comp_neo_hook', 'UCNH', 'hypoelastic_plastic')]; "
+        "print(names, family.find('nothing'), 'solver.materials.visco_scram' in sys.modules)"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=Path(__file__).resolve().parents[3],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert run.stdout.strip() == "['CompNeoHook', 'CompNeoHook', 'ElasticPlastic'] None False"

@@ -53,7 +53,7 @@ BREAKING = [
     ("UPS406", "warning", deck(saves=("p.x", "p.xx")), "p.xx"),
     ("UPS406", "warning", deck(saves=("press_CC",)), "press_CC"),
     ("UPS407", "error", deck(extra=PRESSURE.replace("</MPM>", SECOND_LOAD + "</MPM>"), flags=LOADS_ON), "load curve 1"),
-    ("UPS408", "error", deck(flags="<UsePrescribedDeformation>true</UsePrescribedDeformation>" + NO_FILE), "no.txt"),
+    ("UPS408", "warning", deck(flags="<UsePrescribedDeformation>true</UsePrescribedDeformation>" + NO_FILE), "no.txt"),
     ("UPS409", "error", deck().replace("<interpolator>linear", "<interpolator>gimp"), "add up to"),
     ("UPS409", "error", deck().replace("<patches>", EXTRA + "<patches>"), "no extra cells"),
     ("UPS413", "warning", on_face("1.0"), "[vx, vy, vz]"),

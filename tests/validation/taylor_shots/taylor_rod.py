@@ -20,9 +20,19 @@ PARTICLES_A_CELL = 2
 """Along each axis."""
 
 
+class Answer(NamedTuple):
+    """A published value and how far from it the run may end, as a fraction of it."""
+
+    value: float
+    tolerance: float
+
+
 @dataclass(frozen=True)
 class Shot:
-    """A rod and how it is shot; SI units. ``constants`` and ``models`` are include files."""
+    """A rod and how it is shot; SI units. ``constants`` and ``models`` are include files.
+
+    ``answers`` are published values by the names of ``Rod``'s fields.
+    """
 
     title: str
     length: float
@@ -30,17 +40,21 @@ class Shot:
     speed: float
     temperature: float
     duration: float
+    viscosity: bool
+    """Artificial viscosity."""
     constants: tuple[str, ...]
     models: tuple[str, ...]
+    answers: dict[str, Answer]
+    source: str
 
 
 class Rod(NamedTuple):
     """The recovered rod."""
 
     length: float
-    """m."""
+    """Over that at the start."""
     foot: float
-    """Radius of the foot, m."""
+    """Radius of the foot over that of the rod."""
     temperature: float
     """At the centre of the face that hit the wall, K."""
     plastic_strain: float
@@ -51,7 +65,11 @@ class Rod(NamedTuple):
 
 def shots() -> dict[str, Shot]:
     """All shots by name."""
-    return {name: Shot(**values) for name, values in json.loads((HERE / "shots.json").read_text()).items()}
+    found = {}
+    for name, values in json.loads((HERE / "shots.json").read_text()).items():
+        answers = {quantity: Answer(**answer) for quantity, answer in values.pop("answers").items()}
+        found[name] = Shot(**values, answers=answers)
+    return found
 
 
 def mesh(shot: Shot, cells: int) -> tuple[float, float]:
@@ -68,6 +86,7 @@ def deck(shot: Shot, cells: int) -> str:
     return Template((HERE / "rod.ups.in").read_text()).substitute(
         name=shot.title,
         duration=shot.duration,
+        viscosity=str(shot.viscosity).lower(),
         output_interval=shot.duration / 4.0,
         width=cells_across * across,
         height=cells_along * along,
@@ -96,8 +115,8 @@ def shoot(shot: Shot, cells: int, folder: Path) -> Rod:
     centre = int(np.argmin(position[:, 0] ** 2 + position[:, 1] ** 2))
     _, energy = result.history("KineticEnergy")
     return Rod(
-        length=float((position[:, 1] + along * F[:, 1, 1]).max()),
-        foot=float((position[:, 0] + across * F[:, 0, 0]).max()),
+        length=float((position[:, 1] + along * F[:, 1, 1]).max() / shot.length),
+        foot=float((position[:, 0] + across * F[:, 0, 0]).max() / shot.radius),
         temperature=float(result["p.temperature"][-1][centre]),
         plastic_strain=float(result["p.plasticStrain"][-1][centre]),
         energy=float(energy[-1] / energy[0]),

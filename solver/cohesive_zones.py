@@ -1,0 +1,240 @@
+"""Cohesive zones: pieces of a surface that tie two materials until they are pulled or slid apart.
+
+The traction law is that of Xu and Needleman (J. Mech. Phys. Solids 42, 1994) with r = 0, as it was brought to
+the material point method by Daphalapurkar, Lu, Coker and Komanduri (Int. J. Fracture 143, 2007).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.creation import ParticleIds
+from solver.declare import Parameter
+from solver.geometry.read_table import read_table
+from solver.grid import Grid
+from solver.nodal import NodalFields
+from solver.particles import StateVariable, keep, new_arrays
+
+Array = NDArray[Any]
+
+COLUMNS = 12
+"""Numbers in a row of a file: position, area, normal, tangent, bottom material, top material."""
+
+LEAST_MASS = 2.0e-200
+"""Nodal mass above which a node has a velocity of the material."""
+
+NO_WEIGHT = 1.0e-100
+"""Added to sums of weights, so that a zone far from a material has velocity 0 instead of 0/0."""
+
+STEPS_TO_RELEASE = 1000
+"""Steps of opening in which a failed zone lets go."""
+
+OFFSETS = np.array([[a, b, c] for c in (0, 1) for b in (0, 1) for a in (0, 1)])
+"""The nodes of a cell."""
+
+
+class CohesiveZone(NamedTuple):
+    """The law of the zones of one file, by the opening D_n and the slidings D_1, D_2.
+
+    Normal traction: e sig_max (D_n/d_n) exp(-D_n/d_n) (E_1 + (1 - q) (1 - E_1)) with E_i = exp(-(D_i/d_t)^2);
+    tangential ones: sqrt(2 e) tau_max (D_i/d_t) (1 + D_n/d_n) exp(-D_n/d_n) E_i. The ratio of the energies is
+    q = sqrt(e/2) tau_max d_t / (e sig_max d_n). Beyond its largest opening or sliding a zone has failed, and
+    lets go within 1000 steps in which it opens. As in Uintah the second sliding does not count in E_1.
+    """
+
+    delta_n: Annotated[float, Parameter("opening of the largest normal traction", unit="m", gt=0.0)]
+    delta_t: Annotated[
+        float, Parameter("sliding, times sqrt(2), of the largest tangential traction", unit="m", gt=0.0)
+    ]
+    sig_max: Annotated[float, Parameter("largest normal traction", unit="Pa", gt=0.0)]
+    tau_max: Annotated[float, Parameter("largest tangential traction", unit="Pa", gt=0.0)]
+    cz_filename: Annotated[
+        str,
+        Parameter(
+            "file with a row per zone: position, area, normal, tangent (ten numbers), bottom and top material"
+        ),
+    ]
+    delta_n_fail: Annotated[
+        float | None, Parameter("opening at failure; by default 4 delta_n", unit="m", gt=0.0)
+    ] = None
+    delta_t_fail: Annotated[
+        float | None, Parameter("sliding at failure; by default 4 delta_t", unit="m", gt=0.0)
+    ] = None
+    do_rotation: Annotated[bool, Parameter("whether zones turn with their opening")] = False
+    name: Annotated[str, Parameter("a name", attribute=True, ignored="zones are numbered")] = ""
+
+    def faults(self) -> list[tuple[str, str]]:
+        """Fields that do not go together, each with what is wrong."""
+        if self.do_rotation:
+            return [("do_rotation", "Uintah's angle of rotation is a length: no unit gives it a meaning")]
+        return []
+
+
+class ZoneState(NamedTuple):
+    """The zones of one material of zones, (n,) or (n, 3); an archive stores them as particles."""
+
+    position: Annotated[Array, StateVariable("p.x", "Point")]
+    area: Annotated[Array, StateVariable("cz.area")]
+    normal: Annotated[Array, StateVariable("cz.norm", "Vector")]
+    """From the bottom to the top material."""
+    tangent: Annotated[Array, StateVariable("cz.tang", "Vector")]
+    top_displacement: Annotated[Array, StateVariable("cz.disptop", "Vector")]
+    bottom_displacement: Annotated[Array, StateVariable("cz.dispbottom", "Vector")]
+    separation: Annotated[Array, StateVariable("cz.separation", "Vector")]
+    force: Annotated[Array, StateVariable("cz.force", "Vector")]
+    """On the bottom material; the top one feels the opposite."""
+    top: Annotated[Array, StateVariable("cz.topmat", "int")]
+    bottom: Annotated[Array, StateVariable("cz.botmat", "int")]
+    failed: Annotated[Array, StateVariable("cz.failed", "int")]
+    """0 while the zone is sound, then the number of steps in which it opened, at most 1000."""
+    id: Annotated[Array, StateVariable("cz.CZID", "long64")]
+
+
+def read_zones(file: Path, grid: Grid, materials: int, ids: ParticleIds) -> ZoneState:
+    """The zones of a file that lie in the grid.
+
+    Parameters
+    ----------
+    materials : number of materials of the deck; a zone names its two by their index.
+    ids : gives ids to the zones of all files, apart from those of particles.
+
+    Raises
+    ------
+    ValueError
+        when a row is not twelve numbers or names a material that does not exist; names file and line.
+    """
+    table = read_table(file, COLUMNS)
+    indices = table[:, 10:12]
+    wrong = ((indices < 0) | (indices >= materials) | (indices != np.floor(indices))).any(axis=1)
+    if wrong.any():
+        row = int(np.flatnonzero(wrong)[0])
+        raise ValueError(
+            f"{file}: row {row + 1} names the materials {indices[row, 0]:g} and {indices[row, 1]:g}; "
+            f"the deck has {materials}, the first is 0"
+        )
+    table = table[_in_domain(grid, table[:, :3])]
+    zones = new_arrays(ZoneState, len(table))
+    zones.position[:], zones.area[:] = table[:, :3], table[:, 3]
+    zones.normal[:], zones.tangent[:] = table[:, 4:7], table[:, 7:10]
+    zones.bottom[:], zones.top[:] = table[:, 10], table[:, 11]
+    zones.id[:] = ids.assign(zones.position)
+    return zones
+
+
+def _in_domain(grid: Grid, positions: Array) -> Array:
+    """Whether positions (n, 3) lie in a patch of the grid, (n,)."""
+    cells = grid.cell_of(positions)
+    inside = [((cells >= patch.low) & (cells < patch.high)).all(axis=1) for patch in grid.patches]
+    return np.asarray(np.any(inside, axis=0))
+
+
+def tractions(law: CohesiveZone, opening: Array, first: Array, second: Array) -> tuple[Array, Array, Array]:
+    """Normal and tangential tractions, (n,) each, of an opening and two slidings, (n,)."""
+    normal_work = math.e * law.sig_max * law.delta_n
+    tangential_work = math.sqrt(0.5 * math.e) * law.tau_max * law.delta_t
+    ratio = tangential_work / normal_work
+    relative = opening / law.delta_n
+    decay = np.exp(-relative)
+    by_first, by_second = (np.exp(-((d / law.delta_t) ** 2)) for d in (first, second))
+    normal = normal_work / law.delta_n * decay * relative * (by_first + (1.0 - ratio) * (1.0 - by_first))
+    shear = 2.0 * normal_work / law.delta_t * (ratio + ratio * relative) * decay
+    return normal, shear * (first / law.delta_t) * by_first, shear * (second / law.delta_t) * by_second
+
+
+def has_failed(law: CohesiveZone, opening: Array, first: Array, second: Array) -> Array:
+    """Whether a zone is opened, or slid, too far, (n,)."""
+    largest_opening = 4.0 * law.delta_n if law.delta_n_fail is None else law.delta_n_fail
+    largest_sliding = 4.0 * law.delta_t if law.delta_t_fail is None else law.delta_t_fail
+    slid = (np.abs(first) > largest_sliding) | (np.abs(second) > largest_sliding)
+    return np.asarray((np.abs(opening) > largest_opening) | slid)
+
+
+def dot(a: Array, b: Array) -> Array:
+    """Scalar products of vectors (n, 3)."""
+    return np.einsum("nc,nc->n", a, b)
+
+
+@dataclass
+class CohesiveZones:
+    """The zones of one file in a simulation.
+
+    :meth:`act` is for the hook ``after_contact`` of a simulation, :meth:`settle` for ``after_step``.
+
+    Attributes
+    ----------
+    law : the traction law.
+    zones : the zones at the start of a step.
+    grid : the grid whose nodes they push.
+    """
+
+    law: CohesiveZone
+    zones: ZoneState
+    grid: Grid
+    _moved: ZoneState | None = field(default=None, repr=False)
+
+    def act(self, nodal: NodalFields, dt: float) -> None:
+        """Let the zones follow the two materials, and add their forces to the external ones at the nodes.
+
+        ``nodal`` holds velocities and masses after contact has acted on them for the first time. The force on
+        a material goes to the nodes about the zone (at its old place) by weight and nodal mass.
+        """
+        nodes, weights = self._nodes_about()
+        self._moved = self._follow(nodal, nodes, weights, dt)
+        for material, sign in ((self.zones.bottom, 1.0), (self.zones.top, -1.0)):
+            share = weights * nodal.mass[material[:, None], nodes]
+            share /= share.sum(axis=1, keepdims=True)
+            pull = sign * self._moved.force[:, None, :] * share[:, :, None]
+            np.add.at(nodal.external_force, (material[:, None], nodes), pull)
+
+    def settle(self) -> None:
+        """Take over the places of the last :meth:`act`; zones that left the domain are gone."""
+        if self._moved is not None:
+            self.zones = keep(self._moved, _in_domain(self.grid, self._moved.position))
+            self._moved = None
+
+    def _nodes_about(self) -> tuple[Array, Array]:
+        """The eight nodes of each zone's cell, (n, 8), and their trilinear weights."""
+        relative = (self.zones.position - np.array(self.grid.anchor)) / np.array(self.grid.spacing)
+        cell = np.floor(relative).astype(np.int64)
+        part = relative - cell
+        weights = np.where(OFFSETS, part[:, None, :], 1.0 - part[:, None, :]).prod(axis=2)
+        i, j, k = np.moveaxis(cell[:, None, :] + OFFSETS, 2, 0)
+        return self.grid.flat(i, j, k), weights
+
+    def _follow(self, nodal: NodalFields, nodes: Array, weights: Array, dt: float) -> ZoneState:
+        """The zones at the end of the step, with their forces."""
+        old = self.zones
+        top, bottom = (_velocity(nodal, m, nodes, weights) for m in (old.top, old.bottom))
+        top_displacement = old.top_displacement + top * dt
+        bottom_displacement = old.bottom_displacement + bottom * dt
+        separation = top_displacement - bottom_displacement
+        second_tangent = np.cross(old.tangent, old.normal)
+        deltas = dot(separation, old.normal), dot(separation, old.tangent), dot(separation, second_tangent)
+        opens = np.linalg.norm(separation, axis=1) >= np.linalg.norm(old.separation, axis=1)
+        sound = old.failed == 0
+        released = np.minimum(old.failed + opens, STEPS_TO_RELEASE)
+        failed = np.where(sound, has_failed(self.law, *deltas), released).astype(np.int32)
+        normal, first, second = tractions(self.law, *deltas)
+        force = normal[:, None] * old.normal + first[:, None] * old.tangent + second[:, None] * second_tangent
+        held = np.where(sound, 1.0, 1.0 - released / STEPS_TO_RELEASE)
+        return old._replace(
+            position=old.position + 0.5 * (top + bottom) * dt,
+            top_displacement=top_displacement,
+            bottom_displacement=bottom_displacement,
+            separation=separation,
+            force=force * (old.area * held)[:, None],
+            failed=failed,
+        )
+
+
+def _velocity(nodal: NodalFields, material: Array, nodes: Array, weights: Array) -> Array:
+    """Velocities (n, 3) of a material at the zones, over the nodes where there is any of it."""
+    there = weights * (nodal.mass[material[:, None], nodes] > LEAST_MASS)
+    velocity = nodal.velocity[material[:, None], nodes]
+    return np.asarray((velocity * there[:, :, None]).sum(axis=1) / (there.sum(axis=1) + NO_WEIGHT)[:, None])
