@@ -333,7 +333,8 @@ def check(archive: str, repair: bool, quick: bool) -> None:
 
         for action in repair_archive(archive) if repair else []:
             click.echo(action)
-        health = check_archive(archive, values=not quick)
+        with _progress_bar("time steps") as progress:
+            health = check_archive(archive, values=not quick, progress=progress)
         for problem in health.problems:
             click.echo(str(problem))
         click.echo(f"{len(health.whole)} whole time steps, {len(health.damaged)} damaged")

@@ -17,15 +17,6 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "inputs"))  # the helpers of 
 from validation_case import Case
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out the slow cases unless they are asked for."""
-    if "slow" in config.getoption("markexpr"):
-        return
-    for item in items:
-        if item.get_closest_marker("slow"):
-            item.add_marker(pytest.mark.skip(reason="takes minutes; run with -m slow"))
-
-
 @pytest.fixture
 def case(request: pytest.FixtureRequest) -> Case:
     """The case in whose folder the test lies."""

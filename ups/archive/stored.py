@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import mmap
 import zipfile
 from collections.abc import Iterator, Mapping
@@ -137,6 +138,9 @@ class StoredTimestep:
         except ArchiveError as error:
             yield error
             return
+        if self.file.time is not None and not math.isclose(self.file.time, self.timestep.time, rel_tol=1e-6):
+            message = f"this is time {self.file.time:.9g}, but index.xml says {self.timestep.time:.9g}"
+            yield ArchiveError(self.path, message, advice=_CUT_OFF)
         try:
             self.global_values()
         except ArchiveError as error:
@@ -148,6 +152,9 @@ class StoredTimestep:
                 yield error
                 continue
             for label, entries in table.entries.items():
+                if label not in self._types:
+                    message = f"{label} is stored, but index.xml does not list it"
+                    yield ArchiveError(self.path.parent, message, advice=_CUT_OFF)
                 yield from self._gaps(level, label, entries, table.particles)
                 for entry in entries.values():
                     try:

@@ -34,12 +34,15 @@ class TimestepFile:
         Bytes of the size in front of a compressed block, 4 or 8.
     sections
         What the components of the code added, such as ``<MPM>`` and ``<MaterialProperties>``.
+    time
+        Time at the end of the step, or None where the file does not say.
     """
 
     grid: Grid
     byte_order: ByteOrder
     size_bytes: int
     sections: tuple[etree._Element, ...]
+    time: float | None = None
 
 
 def timestep_lines(
@@ -161,7 +164,10 @@ def read_timestep(path: Path, index: ArchiveIndex, timestep: Timestep) -> Timest
         grid = _read_grid(Node.root(grid_file, "Grid"))
     known = ("Meta", "Time", "Grid", "Data")
     sections = tuple(child for child in root.element.iterchildren("*") if child.tag not in known)
-    return TimestepFile(grid, BYTE_ORDERS[endianness], bits // 8, sections)
+    time = None if stamp is None else stamp.child("currentTime")
+    return TimestepFile(
+        grid, BYTE_ORDERS[endianness], bits // 8, sections, None if time is None else time.real()
+    )
 
 
 def _read_grid(node: Node) -> Grid:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ups.archive import Archive, ArchiveError, Level
+from ups.archive.markup import parse
 
 DEFORMATION, VOLUME = "p.deformationMeasure", "p.volume"
 
@@ -17,29 +18,45 @@ _CORNERS = np.array(
 def particle_edges(archive: Archive, step: int, material: int, level: Level) -> np.ndarray:
     """Edge vectors of the boxes that particles fill, the columns of matrices of shape (n, 3, 3).
 
-    A particle starts as a cube and is deformed by its ``p.deformationMeasure`` F, of a size that gives it
-    its ``p.volume``; in a grid of one layer of cells with one layer of particles it is as thick as the
-    layer. Without F the box is not deformed; without a volume it is half a cell wide.
+    A particle starts as a box of the shape of a cell and is deformed by its ``p.deformationMeasure`` F, of
+    a size that gives it its ``p.volume``; in a grid of one layer of cells with one layer of particles it is
+    as thick as the layer, and in a deck of rotational symmetry its volume is that of a radian. Without F
+    the box is not deformed; without a volume it is half a cell wide.
     """
-    thick = np.array(level.spacing)
+    cell = np.array(level.spacing)
     layered = _layered_axes(archive, step, material, level)
-    start = np.where(layered, thick, thick / 2.0)
     count = archive.particle_count(step, material)
     deformation = np.broadcast_to(np.eye(3), (count, 3, 3))
     if _is_stored(archive, step, DEFORMATION, material):
         deformation = archive.particles(step, DEFORMATION, material)
     if not _is_stored(archive, step, VOLUME, material) or layered.all():
-        return deformation * start
+        return deformation * np.where(layered, cell, cell / 2.0)
     volume = archive.particles(step, VOLUME, material)
     with np.errstate(divide="ignore", invalid="ignore"):
-        free = np.abs(volume / np.linalg.det(deformation)) / np.prod(thick[layered])
-        side = free ** (1.0 / np.count_nonzero(~layered))
-    side = np.where(np.isfinite(side), side, 0.0)
-    return deformation * np.where(layered, thick, side[:, None])[:, None, :]
+        if layered[2] and _is_axisymmetric(archive):  # around the y axis
+            area = volume / positions_of(archive, step, material)[:, 0]
+            filled = np.abs(area / np.linalg.det(deformation[:, :2, :2])) / np.prod(cell[:2])
+        else:
+            filled = np.abs(volume / np.linalg.det(deformation)) / np.prod(cell)
+        share = filled ** (1.0 / np.count_nonzero(~layered))
+    share = np.where(np.isfinite(share), share, 0.0)
+    return deformation * np.where(layered, cell, share[:, None] * cell)[:, None, :]
 
 
 def _is_stored(archive: Archive, step: int, label: str, material: int) -> bool:
     return label in archive.labels(step) and material in archive.materials(step, label)
+
+
+def _is_axisymmetric(archive: Archive) -> bool:
+    """Whether the deck that an archive keeps asks for rotational symmetry."""
+    path = archive.path / "input.xml"
+    if not path.is_file():
+        return False
+    try:
+        deck = parse(path)
+    except ArchiveError:
+        return False  # a damaged deck says nothing
+    return any((tag.text or "").strip().lower() == "true" for tag in deck.iter("axisymmetric"))
 
 
 def _layered_axes(archive: Archive, step: int, material: int, level: Level) -> np.ndarray:

@@ -90,8 +90,12 @@ class ArchiveSummary:
     problems: tuple[ArchiveError, ...]
 
     def as_dict(self) -> dict[str, object]:
-        """Everything as plain numbers, strings, lists and dictionaries, for JSON."""
+        """Everything as plain numbers, strings, lists and dictionaries, for JSON; None for a range of nothing."""
         found = asdict(self)
+        for variable in found["variables"]:
+            for name in ("low", "high", "magnitude"):
+                if any(np.isnan(end) for end in variable[name] or ()):
+                    variable[name] = None
         found["levels"] = [
             {
                 "cells": level.interior.shape,

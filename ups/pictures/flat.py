@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DPI = 120
-_WIDTH = 8.0
-"""Inches."""
+_WIDTH, _BESIDE = 8.0, 2.4
+"""Inches: of a picture, and of the colour bar and the labels beside what is shown."""
 
 _LETTERS = 11
 """Letters of the title on an inch."""
@@ -69,8 +69,8 @@ def _size(view: View, shown: Range) -> tuple[float, float]:
     if len(view.axes) == 1:
         return _WIDTH, 5.0
     across, up = (shown.high[axis] - shown.low[axis] for axis in view.axes)
-    height = min(max((_WIDTH - 2.0) * up / across, 2.0), 9.0)
-    return min(max((height * across / up), 2.5) + 2.0, _WIDTH) if height == 9.0 else _WIDTH, height + 1.2
+    height = min(max((_WIDTH - _BESIDE) * up / across, 2.0), 8.0)
+    return min(max(height * across / up, 2.5) + _BESIDE, _WIDTH), height + 1.2
 
 
 def _draw_profile(view: View, step: int, axes: Any, shown: Range) -> None:

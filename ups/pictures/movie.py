@@ -17,6 +17,10 @@ Progress = Callable[[int, int], None]
 """Called after each frame with the number done and the number of all."""
 
 
+_NEARLY_WHITE = 248
+"""Colours from here on are the background, which quantising blends with the edges of letters."""
+
+
 def movie(
     archive_path: str | Path,
     out: str | Path,
@@ -77,12 +81,11 @@ def _write_gif(out: Path, frames: Iterator[np.ndarray], frames_per_second: float
     """Write frames as they come; all share the colours of the first, or the bar would flicker."""
     from PIL import Image
 
-    beginning = Image.fromarray(next(frames))
-    colours = (beginning.quantize(254).getpalette() or [])[: 3 * 254] + [255, 255, 255, 0, 0, 0]
-    palette = Image.new("P", (1, 1))
-    palette.putpalette(colours)  # white and black, which quantising blends with their neighbours, stay pure
-    first = beginning.quantize(palette=palette, dither=Image.Dither.NONE)
-    rest = (Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
+    first = Image.fromarray(next(frames)).quantize(256)
+    colours = np.array(first.getpalette(), dtype=np.uint8).reshape(-1, 3)
+    colours[(colours >= _NEARLY_WHITE).all(axis=1)] = 255
+    first.putpalette(colours.tobytes())
+    rest = (Image.fromarray(frame).quantize(palette=first, dither=Image.Dither.NONE) for frame in frames)
     duration = max(20, round(1000.0 / frames_per_second))
     first.save(out, save_all=True, append_images=rest, duration=duration, loop=0)
 

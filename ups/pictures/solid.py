@@ -134,4 +134,4 @@ def _add_slices(pyvista: Any, plotter: Any, view: View, step: int, options: dict
     )
     data = image.point_data if on_nodes else image.cell_data
     data["shown"] = values.ravel(order="F")
-    plotter.add_mesh(image.slice_orthogonal().combine(), lighting=False, **options)
+    plotter.add_mesh(image.slice_orthogonal().combine(), ambient=0.7, diffuse=0.3, **options)

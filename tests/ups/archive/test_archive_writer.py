@@ -4,6 +4,7 @@ import re
 import resource
 import struct
 import zlib
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -540,42 +541,44 @@ def test_particles_that_are_nowhere_are_named(grid, create):
         writer.write_timestep(1, 0.1, 0.1, {X: {0: points}})
 
 
-@pytest.fixture
-def full_disk():
-    """Return a function after which no file can grow beyond a size, as on a full disk."""
+@contextmanager
+def full_disk(size):
+    """No file can grow beyond a size, as on a full disk; ends before pytest itself writes again."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
-def test_a_full_disk_leaves_the_archive_readable(grid, create, full_disk):
+def test_a_full_disk_leaves_the_archive_readable(grid, create):
     writer = create(grid)
     writer.write_timestep(1, 0.1, 0.1, particle_fields())
-    full_disk(2000)
     many = {X: {0: np.full((1000, 3), 0.25)}}
-    with pytest.raises(ArchiveError, match="cannot write the time step"):
-        writer.write_timestep(2, 0.2, 0.1, many)
-    with pytest.raises(ArchiveError, match="cannot write the time step"):
-        writer.write_checkpoint(2, 0.2, 0.1, many)
-    writer.close()
+    with full_disk(2000):
+        with pytest.raises(ArchiveError, match="cannot write the time step"):
+            writer.write_timestep(2, 0.2, 0.1, many)
+        with pytest.raises(ArchiveError, match="cannot write the time step"):
+            writer.write_checkpoint(2, 0.2, 0.1, many)
+        writer.close()
     archive = Archive(writer.directory)
     assert [timestep.step for timestep in archive.timesteps] == [1]
     assert archive.particles(1, "p.volume", 0).tolist() == [2.0, 1.0, 3.0]
     assert not list(writer.directory.glob("**/*.partial"))
 
 
-def test_a_full_disk_leaves_whole_lines_in_the_histories(grid, create, full_disk):
+def test_a_full_disk_leaves_whole_lines_in_the_histories(grid, create):
     writer = create(grid)
     writer.append_reductions(1, 0.125, {ENERGY: {-1: 1.0}})
     writer.flush()
-    full_disk(15)
-    writer.append_reductions(2, 0.25, {ENERGY: {-1: 2.0}})
-    writer.append_reductions(3, 0.375, {ENERGY: {-1: 3.0}})
-    with pytest.raises(ArchiveError, match=r"KineticEnergy\.dat: cannot write the history"):
-        writer.flush()
+    with full_disk(15):
+        writer.append_reductions(2, 0.25, {ENERGY: {-1: 2.0}})
+        writer.append_reductions(3, 0.375, {ENERGY: {-1: 3.0}})
+        with pytest.raises(ArchiveError, match=r"KineticEnergy\.dat: cannot write the history"):
+            writer.flush()
     path = writer.directory / "KineticEnergy.dat"
     assert path.read_text() == "0.125\t1\n"
-    full_disk(1000)
     writer.close()
     assert path.read_text() == "0.125\t1\n0.25\t2\n0.375\t3\n"
 

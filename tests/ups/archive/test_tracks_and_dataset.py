@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import pytest
 
+import ups
 from ups.archive import Archive, ArchiveError, Variable
 
 X = Variable("p.x", "ParticleVariable", "Point")
@@ -50,6 +51,11 @@ def test_follow(archive):
     assert np.array_equal(track.values, [[91, 51, nan], [92, 52, nan], [nan, 53, nan]], equal_nan=True)
     assert archive.follow("p.x", 7, steps=[2]).values[0, 0].tolist() == [0.75, 0.5, 0.25]
     assert archive.follow("p.color", [9, 3]).values.tolist() == [[9, 3], [9, 3], [0, 3]]
+
+
+def test_ups_open_gives_the_archive(archive):
+    opened = ups.open(archive.path)
+    assert opened.particles(-1, "p.stress:XX").tolist() == archive.particles(3, "p.stress")[:, 0, 0].tolist()
 
 
 def test_what_cannot_be_followed(archive, create, grid):

@@ -131,6 +131,26 @@ def test_boxes_in_a_grid_of_one_layer(tmp_path, heights, sides):
     assert edges == pytest.approx(np.tile(np.diag(sides), (len(x), 1, 1)))
 
 
+def test_boxes_of_rotational_symmetry(tmp_path):
+    grid = Grid.single_level([Box((0, 0, 0), (4, 4, 1))], spacing=(0.5, 0.5, 0.5))
+    x, sides, stretch = (
+        np.array([[0.5, 0.3, 0.25], [1.5, 0.3, 0.25]]),
+        np.array([0.1, 0.2]),
+        np.diag([2.0, 0.5, 1.5]),
+    )
+    fields = {
+        POSITION: {0: x},
+        DEFORMATION: {0: np.stack([np.eye(3), stretch])},
+        VOLUME: {0: x[:, 0] * sides**2},
+    }
+    deck = "<a><MPM><axisymmetric>true</axisymmetric></MPM></a>"
+    with ArchiveWriter.create(tmp_path / "a", grid, input_xml=deck) as writer:
+        writer.write_timestep(1, 0.1, 0.1, fields)
+    edges = particle_edges(Archive(tmp_path / "a"), 1, 0, grid.levels[0])
+    assert edges[0, :2, :2] == pytest.approx(0.1 * np.eye(2))
+    assert edges[1, :2, :2] == pytest.approx(0.2 * stretch[:2, :2])
+
+
 def test_steps_written_at_the_same_time_are_the_same(growing, tmp_path):
     counts = []
     convert(growing, tmp_path / "one.pvd")

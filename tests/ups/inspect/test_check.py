@@ -53,6 +53,34 @@ def test_a_crash_in_the_last_step(make, compression, name, kept):
     assert (archive / "index.xml.damaged").exists()
 
 
+@pytest.mark.parametrize(
+    ("name", "old", "new", "message"),
+    [
+        (
+            "timestep.xml",
+            "<currentTime>0.5<",
+            "<currentTime>0.7<",
+            "this is time 0.7, but index.xml says 0.5",
+        ),
+        (
+            "l0/p00000.xml",
+            "<variable>g.mass<",
+            "<variable>g.mast<",
+            "g.mast is stored, but index.xml does not",
+        ),
+        ("l0/p00001.xml", "<index>1<", "<index>3<", "is missing on the patches"),
+    ],
+)
+def test_tables_that_contradict_each_other_are_noticed(make, name, old, new, message):
+    archive = make()
+    file = archive / "t00004" / name
+    assert old in file.read_text()
+    file.write_text(file.read_text().replace(old, new, 1))
+    health = check_archive(archive)
+    assert health.damaged == [4]
+    assert any(message in str(problem) for problem in health.problems)
+
+
 def test_a_missing_file_is_named(make):
     archive = make()
     (archive / "t00004" / "l0" / "p00001.data").unlink()

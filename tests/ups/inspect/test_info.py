@@ -77,6 +77,18 @@ def test_the_command_as_json(make):
     assert {v["name"] for v in found["variables"]} >= {"p.stress", "g.mass"}
 
 
+def test_a_range_of_nothing_is_null_in_json(make):
+    def empty(_step, fields):
+        for variable, by_material in fields.items():
+            if variable.is_particle:
+                by_material[1] = by_material[1][:0]
+
+    found = summarize(make(change=empty)).as_dict()
+    text = json.dumps(found, allow_nan=False)
+    lone = next(v for v in json.loads(text)["variables"] if (v["name"], v["material"]) == ("p.velocity", 1))
+    assert (lone["count"], lone["low"], lone["magnitude"]) == (0, None, None)
+
+
 def test_what_is_no_archive_is_said(tmp_path):
     with pytest.raises(ArchiveError, match=r"there is no index\.xml"):
         summarize(tmp_path)
