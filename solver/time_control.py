@@ -66,3 +66,12 @@ class TimeControl:
         if self.max_wall_time > 0.0 and wall_time >= self.max_wall_time:
             return False
         return time < self.maxTime
+
+    def usual_step(self, stable: float) -> float:
+        """The step after the first ones, where ``stable`` is the stable step."""
+        return min(max(stable * self.timestep_multiplier, self.delt_min), self.delt_max)
+
+    def foreseen_steps(self, stable: float, time: float, done: int = 0) -> int:
+        """A guess at the number of steps from a time on, after ``done`` steps, if the stable step stays."""
+        guess = max(math.ceil((self.maxTime - time) / self.usual_step(stable)), 0)
+        return min(guess, max(self.max_Timesteps - done, 0)) if self.max_Timesteps else guess

@@ -60,7 +60,9 @@ def _condition(boundary: BoundaryType, materials: int, complain: Complain) -> Co
         return None  # as in Uintah, a number where a velocity belongs has no effect; lint says so
     if values is None or len(values) != width:
         form = "[vx, vy, vz]" if width == 3 else "a number"
-        raise complain("UPS207", f"the <value> of {boundary.label} must be {form}: {boundary.value!r}", boundary)
+        raise complain(
+            "UPS207", f"the <value> of {boundary.label} must be {form}: {boundary.value!r}", boundary
+        )
     v = values if width == 3 else values * 3
     return Condition(label, kind, material, (v[0], v[1], v[2]))
 
@@ -98,15 +100,18 @@ def _shape(face: Face, kind: str, axis: int, complain: Complain) -> Callable[[Ar
     if kind in ("rectangle", "rectangulus"):
         outer = corners("lower", "upper") if kind == "rectangle" else corners("outer_lower", "outer_upper")
         inner = None if kind == "rectangle" else corners("inner_lower", "inner_upper")
-        return lambda points: _in_box(points[:, plane], *outer) & (
-            True if inner is None else ~_in_box(points[:, plane], *inner)
+        return lambda points: (
+            _in_box(points[:, plane], *outer)
+            & (True if inner is None else ~_in_box(points[:, plane], *inner))
         )
     origin = _point(face, "origin", complain)[plane]
     if kind == "ellipse":
         return lambda points: _in_ellipse(points[:, plane] - origin, face)
     low, high = (0.0, face.radius) if kind == "circle" else (face.inner_radius, face.outer_radius)
     if high <= low:
-        raise complain("UPS208", f"the radius of the {kind} must be positive, the outer above the inner", face)
+        raise complain(
+            "UPS208", f"the radius of the {kind} must be positive, the outer above the inner", face
+        )
     return lambda points: _in_ring(points[:, plane] - origin, low, high)
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from solver.contact.law import ContactLaw
 from solver.creation import Creation, ParticleIds, create_particles
 from solver.declare import IntVector, Vector
@@ -141,7 +139,7 @@ def _split(
             raise ProblemError(
                 "UPS405", f"{counts[axis]} patches in {'xyz'[axis]} are more than cells", place(box)
             )
-    patches = []
+    patches: list[Patch] = []
 
     def cut(axis: int, i: int) -> int:
         return low[axis] + (high[axis] - low[axis]) * i // counts[axis]
@@ -347,7 +345,7 @@ class _Builder:
         failure = self._failure(section, creation)
         if hasattr(model, "failure_is_checked"):
             model = model._replace(failure_is_checked=lets_fail(failure.erosion))
-        state = new_arrays(state_record(model), len(creation.particles))
+        state: Any = new_arrays(state_record(model), len(creation.particles))
         self._guard(
             "UPS502", model, lambda: initialize(model, state, creation.particles, material, creation.patch)
         )
@@ -429,12 +427,3 @@ class _Builder:
             simulation.after_step.append(
                 lambda sim, dt: insertions.apply([body.particles for body in sim.bodies], sim.time, dt)
             )
-
-
-def expected_steps(specification: Specification, first_step: float) -> int:
-    """A guess at the number of time steps: the time span over the first step, within the deck's limits."""
-    control = specification.Time
-    if first_step <= 0.0 or not np.isfinite(first_step):
-        return control.max_Timesteps
-    guess = int((control.maxTime - control.initTime) / first_step) + 1
-    return min(guess, control.max_Timesteps) if control.max_Timesteps else guess

@@ -70,7 +70,7 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     ------
     DeckError : the deck cannot be run.
     """
-    from ups.factory import build, expected_steps
+    from ups.factory import build
 
     deck = read_deck(path)
     specification = deck.require()
@@ -78,8 +78,8 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     control = specification.Time
     stable = float(simulation.initial_time_step())
     first = control.limit(stable, control.initTime, 0.0, math.inf)
-    usual = min(max(stable * control.timestep_multiplier, control.delt_min), control.delt_max)
-    steps = expected_steps(specification, usual)
+    usual = control.usual_step(stable)
+    steps = control.foreseen_steps(stable, control.initTime)
     materials = tuple(
         MaterialPlan(body.index, section.name, _model_name(section.constitutive_model), len(body.particles))
         for body, section in zip(

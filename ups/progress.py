@@ -123,12 +123,10 @@ def describe(run: Run) -> str:
 
 
 def _steps_foreseen(run: Run) -> int:
-    """Steps to come if they all were as long as the next."""
-    control, simulation = run.control, run.simulation
-    steps = int((control.maxTime - simulation.time) / run.next_dt) + 1 if run.next_dt > 0.0 else 0
-    if control.max_Timesteps:
-        steps = min(steps, control.max_Timesteps - simulation.step_number)
-    return max(steps, 0)
+    """Steps to come, by the stable step, which delt_init may hold back at first."""
+    simulation, control = run.simulation, run.control
+    stable = run.stable_dt or run.next_dt / control.timestep_multiplier  # not known yet after a restart
+    return control.foreseen_steps(stable, simulation.time, simulation.step_number)
 
 
 def summary(run: Run) -> str:

@@ -49,6 +49,7 @@ class Run:
     control : the deck's limits of time and time step.
     observers : in the order in which they are called.
     dt : size of the last step, 0 before the first.
+    stable_dt : stable step that the solver found last.
     next_dt : size of the next step; found from the stable step where it is 0 at the start.
     is_last : whether the run ends with the step that is being made or was made last.
     stop_reason : why somebody asked the run to end after the present step, or nothing.
@@ -63,6 +64,7 @@ class Run:
     observers: Sequence[Observer] = ()
     dt: float = 0.0
     next_dt: float = 0.0
+    stable_dt: float = 0.0
     is_last: bool = False
     stop_reason: str = ""
     failed: bool = False
@@ -142,6 +144,7 @@ class Run:
 
     def _find_next_dt(self, stable: float) -> None:
         end = min((observer.end_of_step() for observer in self.observers), default=math.inf)
+        self.stable_dt = stable
         self.next_dt = self.control.limit(stable, self.simulation.time, self.dt, end)
 
     def _ends_with(self, dt: float) -> bool:

@@ -105,7 +105,8 @@ class HyperElasticPlastic(NamedTuple):
     s = mu / J dev b. Beyond the yield surface s returns along itself with the stiffness mu tr b / (3 J), and
     b keeps its trace (Simo and Hughes 1998, Box 9.1, there for the stress J s). The mean stress follows from
     an equation of state. Unlike elastic_plastic the material gives back all elastic work of a cycle of any
-    strain, and is objective in steps of any size. Uintah once had such a material, and no longer does.
+    strain, and its elastic stress is objective in steps of any size. Uintah once had such a material, and no
+    longer does.
     """
 
     bulk_modulus: BulkModulus

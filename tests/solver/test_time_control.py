@@ -134,3 +134,14 @@ def test_steps_between_outputs_cut_at_outputs_are_never_slivers(interval):
         steps.append(dt)
         outputs += time >= due
     assert min(steps) > 1e-6 * interval
+
+
+def test_foreseen_steps_go_by_the_usual_step_and_the_limits():
+    control = TimeControl(
+        maxTime=1.0, delt_min=0.0, delt_max=0.25, timestep_multiplier=0.5, delt_init=1.0e-9, max_Timesteps=0
+    )
+    assert control.foreseen_steps(0.02, 0.0) == 100
+    assert control.foreseen_steps(4.0, 0.5) == 2
+    assert control.foreseen_steps(0.02, 2.0) == 0
+    capped = TimeControl(1.0, 0.0, 0.25, 0.5, max_Timesteps=30)
+    assert capped.foreseen_steps(0.02, 0.0, done=10) == 20
