@@ -53,6 +53,10 @@ from numba.extending import (  # noqa: E402
     type_callable,
 )
 
+# For a numba that was imported before this module, and so did not read the environment set above.
+numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+numba.config.SLP_VECTORIZE = int(os.environ["NUMBA_SLP_VECTORIZE"])
+
 with _without("scipy.linalg"):  # half a second of start-up to find a BLAS that no kernel here uses
     import numba.np.arraymath
 
