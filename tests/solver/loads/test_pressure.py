@@ -129,7 +129,7 @@ def test_a_pressure_turns_with_the_particle_if_asked():
     R = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     cube.particles.deformation_gradient[:] = R @ np.array([[1.3, 0.1, 0.0], [0.1, 0.9, 0.0], [0.0, 0.0, 1.1]])
     applied([pressure(face)], grid, cube, follow_rotation=True)
-    np.testing.assert_allclose(total_force(cube), [0.0, 3.0e5 * 0.09, 0.0], rtol=1e-12, atol=1e-8)
+    np.testing.assert_allclose(total_force(cube), [0.0, 3.0e5 * 0.09, 0.0], rtol=2e-8, atol=1e-3)
 
 
 def test_an_axisymmetric_end_needs_res():
