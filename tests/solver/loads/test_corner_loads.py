@@ -104,7 +104,9 @@ def test_deformed_particles_around_a_rod_agree_with_a_plain_reference(outward):
     nodal = on_grid(acting, rod, grid)
     f, corners = reference(particles, grid.spacing, acting.counts[1], -3.0e3 * load.area, outward)
     loaded = carriers(rod)
-    np.testing.assert_allclose(particles.external_force[loaded], f[loaded], rtol=2e-8, atol=2e-8)  # R is that exact
+    np.testing.assert_allclose(
+        particles.external_force[loaded], f[loaded], rtol=2e-8, atol=2e-8
+    )  # R is that exact
     expected = np.cross(corners[loaded], f[loaded][:, None, :]).sum(axis=(0, 1))
     np.testing.assert_allclose(nodal.sum(axis=0), 4.0 * f[loaded].sum(axis=0), rtol=2e-8, atol=1e-6)
     np.testing.assert_allclose(moment(nodal, grid), expected, rtol=2e-8, atol=1e-6)
