@@ -49,7 +49,7 @@ def _declare(function: Function, default: Callable[..., Any] | None) -> Function
         return body(model, *args)
 
     call.implementations = implementations  # type: ignore[attr-defined]  # functions take attributes
-    call.default = default  # type: ignore[attr-defined]
+    call.default = default  # type: ignore[attr-defined]  # functions take attributes
     GENERICS.append(call)
     for listener in _listeners:
         listener("generic", call)

@@ -42,8 +42,8 @@ def _without(package: str) -> Iterator[None]:
 
 
 import numba  # noqa: E402 - the cache folder has to be known before numba is imported
-from numba.core import cgutils, types  # noqa: E402
-from numba.extending import (  # noqa: E402
+from numba.core import cgutils, types  # noqa: E402 - after the cache folder, too
+from numba.extending import (  # noqa: E402 - after the cache folder, too
     lower_builtin,
     make_attribute_wrapper,
     models,
@@ -60,8 +60,8 @@ numba.config.SLP_VECTORIZE = int(os.environ["NUMBA_SLP_VECTORIZE"])
 with _without("scipy.linalg"):  # half a second of start-up to find a BLAS that no kernel here uses
     import numba.np.arraymath
 
-from solver import dispatch, tensor  # noqa: E402
-from solver.tensor import Tensor  # noqa: E402
+from solver import dispatch, tensor  # noqa: E402 - after the cache folder, too
+from solver.tensor import Tensor  # noqa: E402 - after the cache folder, too
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}}
 """Division by zero gives inf as in numpy. Sums are not reordered and divisions not replaced: where a particle just

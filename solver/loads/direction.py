@@ -19,12 +19,12 @@ class Components(NamedTuple):
 
 
 @generic
-def force_for_unit_load(law: Any, p: int, x: Components, normals: Any) -> Components:  # type: ignore[empty-body]
+def force_for_unit_load(law: Any, p: int, x: Components, normals: Any) -> Components:  # type: ignore[empty-body]  # bodies come from the laws
     """Force on particle ``p`` at ``x`` for a load of one; ``normals`` (n, 3) are those of particle files."""
 
 
 @generic
-def surface_normal(law: Any, p: int, x: Components, normals: Any) -> Components:  # type: ignore[empty-body]
+def surface_normal(law: Any, p: int, x: Components, normals: Any) -> Components:  # type: ignore[empty-body]  # bodies come from the laws
     """Normal of the loaded surface at a particle, of either sign and any length."""
 
 
