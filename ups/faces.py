@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -129,8 +129,3 @@ def _in_ellipse(offset: Array, face: Face) -> Array:
     along = offset[:, 0] * np.cos(angle) + offset[:, 1] * np.sin(angle)
     across = offset[:, 1] * np.cos(angle) - offset[:, 0] * np.sin(angle)
     return np.asarray((along / face.major_radius) ** 2 + (across / face.minor_radius) ** 2 <= 1.0)
-
-
-def symmetric_faces(section: BoundaryConditionSection) -> Sequence[str]:
-    """Faces with a symmetry condition on all of the side."""
-    return [f.side for f in section.Face if f.side and any(b.label.lower() == "symmetric" for b in f.BCType)]

@@ -14,7 +14,7 @@ from solver.grid import Grid
 from ups.archive import ArchiveWriter, Box, ReductionFormat, Variable
 from ups.archive import Grid as ArchiveGrid
 from ups.archive.variables import GLOBAL_MATERIAL
-from ups.deck import DataArchiver, Deck, Save, Specification
+from ups.deck import DataArchiver, Save, Specification
 from ups.diagnostics import Diagnostics, suggestion_for
 from ups.element import Element
 from ups.labels import KNOWN_LABELS
@@ -314,9 +314,3 @@ def _value(simulation: Simulation, variable: Variable, material: int) -> Any:
     """The value of the last step; zero where nothing acted, such as a contact law before its time."""
     value = simulation.reductions.get((variable.name, material))
     return np.zeros(variable.element_type.shape) if value is None else value
-
-
-def check_output(deck: Deck) -> None:
-    """Add to a deck's diagnostics what is wrong with what it saves, without building anything."""
-    if deck.specification is not None:
-        plan_output(deck.specification, deck.reader.place, deck.diagnostics)
