@@ -87,24 +87,16 @@ class Section:
 
 @dataclass(frozen=True)
 class TagGroup:
-    """Tags (or attributes) of a record that a deck gives together, or of which it gives exactly one."""
+    """Tags (or attributes) of a record of which a deck gives exactly one, or at most one if none is needed."""
 
     names: tuple[str, ...]
-    together: bool
-    needed: bool = True
+    needed: bool
 
 
 def one_of(*names: str, needed: bool = True) -> Callable[[Class], Class]:
     """Class decorator: of these tags or attributes a deck gives exactly one (at most one if not ``needed``)."""
-    return _grouped(TagGroup(names, together=False, needed=needed))
+    group = TagGroup(names, needed)
 
-
-def all_or_none_of(*names: str) -> Callable[[Class], Class]:
-    """Class decorator: of these tags or attributes a deck gives all or none."""
-    return _grouped(TagGroup(names, together=True))
-
-
-def _grouped(group: TagGroup) -> Callable[[Class], Class]:
     def add(cls: Class) -> Class:
         _GROUPS[cls] = (group, *_GROUPS.get(cls, ()))
         return cls

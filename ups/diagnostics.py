@@ -37,7 +37,6 @@ CODES: dict[str, str] = {
     "UPS104": "tag given more than once",
     "UPS105": "tag does not belong to the chosen type",
     "UPS106": "one of several tags must be given",
-    "UPS107": "tags must be given together",
     "UPS111": "required attribute missing",
     "UPS112": "unknown attribute",
     # values

@@ -234,18 +234,13 @@ class Reader(ValueReader):
         return self.value(info, hint, child.text, child.texts[0], f"<{child.tag}>")
 
     def _check_group(self, group: TagGroup, record: type, element: Element) -> None:
-        """Check tags (or attributes) that belong together, or of which one must be given."""
+        """Check tags (or attributes) of which one must, or at most one may, be given."""
         attributes = {i.tag for i, _ in declared(record) if i.parameter.attribute}
         given = [
             n for n in group.names if n in element.attributes or (n not in attributes and element.get(n))
         ]
         names = ", ".join(n if n in attributes else f"<{n}>" for n in group.names)
-        if group.together:
-            absent = [n for n in group.names if n not in given]
-            if given and absent and self.complete:
-                lacking = ", ".join(n if n in attributes else f"<{n}>" for n in absent)
-                self.error("UPS107", f"{names} belong together; <{element.tag}> lacks {lacking}", element)
-        elif len(given) > 1:
+        if len(given) > 1:
             at = element.get(given[1]) or element.attributes.get(given[1]) or element
             self.error("UPS106", f"<{element.tag}> takes only one of {names}", at, "remove one of them")
         elif not given and group.needed and self.complete:

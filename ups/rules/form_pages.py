@@ -50,7 +50,6 @@ PAGES: dict[str, str] = {
         "lets most of these pass; they mislead whoever reads the deck."
     ),
     "UPS106": "Of several tags a deck gives exactly one: none, or more than one, is given.",
-    "UPS107": "Tags that make sense together only are given in part.",
     "UPS111": "An attribute is missing without which the tag cannot be read.",
     "UPS112": "The tag takes no such attribute; mostly it is misspelt.",
     "UPS201": "Text stands where only tags may stand; it would be ignored.",
