@@ -101,6 +101,7 @@ def _overrides(
 @click.option(
     "--set", "overrides", multiple=True, metavar="PATH=VALUE", callback=_overrides, help="Set a tag."
 )
+@click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Use N cores; by default all.")
 @click.option("-q", "--quiet", is_flag=True, help="Print problems only.")
 @click.option("-v", "--verbose", is_flag=True, help="Print notes too, and details of internal errors.")
 def run(
@@ -110,6 +111,7 @@ def run(
     step: int | None,
     max_steps: int | None,
     overrides: list[tuple[str, str]],
+    threads: int | None,
     quiet: bool,
     verbose: bool,
 ) -> None:
@@ -139,6 +141,7 @@ def run(
             result = go(
                 output=output,
                 max_steps=max_steps,
+                threads=threads,
                 observers=(interrupts,) if quiet else (interrupts, Progress()),
                 checked=_printer_of_warnings(verbose, quiet),
             )

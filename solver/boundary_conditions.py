@@ -109,7 +109,7 @@ class BoundaryConditions:
     def _run(self, label: str, field: Array, material: int) -> None:
         operations = self._operations[label, material]
         if len(operations.kind):
-            from solver.kernels import apply_operations
+            from solver.kernels.nodes import apply_operations
 
             apply_operations(operations, field)
 

@@ -26,6 +26,15 @@ class GridIndex(NamedTuple):
     nodes: IntVector
 
 
+class NodeBlock(NamedTuple):
+    """The nodes low <= (i, j, k) < high, counted in storage, that one loop adds to."""
+
+    low: IntVector
+    high: IntVector
+    whole: bool
+    """Whether that is all nodes."""
+
+
 @dataclass(frozen=True)
 class Patch:
     """A block of cells low <= (i, j, k) < high, extra cells not included."""
@@ -73,6 +82,11 @@ class Grid:
         first = (-g[0], -g[1], -g[2])
         nodes = (n[0] + 1 + 2 * g[0], n[1] + 1 + 2 * g[1], n[2] + 1 + 2 * g[2])
         return GridIndex(self.anchor, self.spacing, first, nodes)
+
+    @property
+    def all_nodes(self) -> NodeBlock:
+        """The block of all stored nodes."""
+        return NodeBlock((0, 0, 0), self.index.nodes, True)
 
     @property
     def number_of_nodes(self) -> int:

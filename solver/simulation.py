@@ -10,23 +10,30 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solver import kernels
 from solver.boundary_conditions import BoundaryConditions
 from solver.contact.law import ContactLaw, ContactScene
 from solver.flags import Flags
-from solver.grid import FACES, Grid
-from solver.kernels import CHANNELS, EXTERNAL_FORCE, GATHERED, Kinematics, Transfer
+from solver.grid import FACES, Grid, NodeBlock
+from solver.kernels import nodes, settle, stress, transfer
+from solver.kernels.chunks import number_of_chunks
+from solver.kernels.transfer import CHANNELS, EXTERNAL_FORCE, GATHERED, MOTION_SUMS, Transfer
+from solver.lanes import new_rows
 from solver.materials.constitutive import Material, Step, initial_sound_speed, time_step_limit
 from solver.materials.failure import Failure, new_failure
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.particles import Particles, keep
+from solver.team import Team, node_blocks
 
 Array = NDArray[Any]
+
+STEPS_BETWEEN_CUTS = 20
+"""After so many steps the nodes are divided anew among threads."""
 
 
 class DivergedError(RuntimeError):
@@ -100,6 +107,7 @@ class Simulation:
     after_step : calls made before particles are sorted out: inserted particles.
     time_step_limits : functions of the time that bound the step from there.
     spread_corner_loads : adds external forces by particle corners (CBDI), in place of particle weights.
+    team : the threads that share the loops over particles; the results do not depend on how many they are.
     """
 
     grid: Grid
@@ -116,6 +124,7 @@ class Simulation:
     after_step: list[Callable[[Simulation, float], None]] = field(default_factory=list)
     time_step_limits: list[Callable[[float], float]] = field(default_factory=list)
     spread_corner_loads: Callable[[Body, Array], None] | None = None
+    team: Team = field(default_factory=Team)
     time: float = 0.0
     step_number: int = 0
     reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
@@ -124,17 +133,20 @@ class Simulation:
         """Make the arrays that live as long as the simulation, so that steps allocate nothing large."""
         count = self.grid.number_of_nodes
         self.nodal: NodalFields = new_nodal_fields(self.grid, len(self.bodies))
-        self._sums = np.zeros((count, CHANNELS))
-        self._gathered = np.zeros((count, GATHERED))
+        self._sums = new_rows(count, CHANNELS)
+        self._gathered = new_rows(count, GATHERED)
+        self._chunk_sums = np.zeros((0, MOTION_SUMS))
+        self._blocks: dict[int, tuple[int, int, list[NodeBlock]]] = {}
         self._temperature_star = np.zeros((len(self.bodies), count))
         self._projected_temperature = np.zeros((len(self.bodies), count))
-        self._smoothed = np.zeros((count if self.flags.XPIC2 else 0, 3))
         self._images = _periodic_images(self.grid)
         self._image_nodes = np.unique(self._images[1])
         self._owned_nodes = _owned_nodes(self.grid)
         self._owned_cells = _owned_cells(self.grid)
         self._weight = self.boundary_conditions.node_to_cell_weight()
-        self._kinematics = Kinematics(self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization)
+        self._kinematics = stress.Kinematics(
+            self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
+        )
         self._cell_stretch = np.zeros(len(self._owned_cells))
         self.face_forces: dict[str, tuple[float, float, float]] = {}
 
@@ -151,7 +163,7 @@ class Simulation:
     def _initial_limit(self, body: Body) -> float:
         particles = body.particles
         speed = initial_sound_speed(body.model, particles.mass / particles.volume, particles.temperature)
-        waves = kernels.initial_wave_speed(
+        waves = settle.initial_wave_speed(
             particles.velocity, np.broadcast_to(speed, particles.mass.shape).copy()
         )
         return self._limit(body, waves)
@@ -231,18 +243,14 @@ class Simulation:
         """Mass, velocity, forces and temperature of a body at the nodes, with the conditions on symmetry faces."""
         nodal = self.nodal
         if self._is_active(body):
-            kernels.particles_to_grid(
-                self.interpolator, self.grid.index, body.particles, self._transfer(body), self._sums
-            )
+            self._scatter(m, body)
             if self.flags.gradient_enhanced_projection:
-                kernels.add_gradients(self.interpolator, self.grid.index, body.particles, self._sums)
+                transfer.add_gradients(self.interpolator, self.grid.index, body.particles, self._sums)
             if self.spread_corner_loads is not None:
                 self.spread_corner_loads(body, self._sums[:, EXTERNAL_FORCE])
-        else:
-            self._sums[:] = 0.0
         if len(self._images[0]):
-            kernels.fold_images(self._sums, *self._images)
-        kernels.normalise(
+            nodes.fold_images(self._sums, *self._images)
+        nodes.normalise(
             self._sums,
             nodal.mass[m],
             nodal.volume[m],
@@ -256,6 +264,34 @@ class Simulation:
         self.boundary_conditions.apply_temperature(nodal.temperature[m], m)
         self.boundary_conditions.apply_symmetry(nodal.velocity[m], m)
 
+    def _scatter(self, m: int, body: Body) -> None:
+        """Sum what the particles of a body carry at the nodes; each thread fills its own block of nodes."""
+        options, index = self._transfer(body), self.grid.index
+
+        def fill(block: NodeBlock) -> None:
+            transfer.particles_to_grid(self.interpolator, index, block, body.particles, options, self._sums)
+
+        self.team.run([partial(fill, block) for block in self._node_blocks(m, body)])
+
+    def _node_blocks(self, m: int, body: Body) -> list[NodeBlock]:
+        """The blocks of nodes that threads fill, cut anew as particles move."""
+        count = len(body.particles)
+        made, particles, blocks = self._blocks.get(m, (0, -1, []))
+        if particles != count or self.step_number - made >= STEPS_BETWEEN_CUTS:
+            blocks = node_blocks(self.grid, body.particles.position, self.team.size_for(count))
+            self._blocks[m] = self.step_number, count, blocks
+        return blocks
+
+    def _in_chunks(self, body: Body, work: Callable[[int, int, Array], None]) -> Array:
+        """Call ``work(first, last, sums)`` for the chunks of a body's particles; the sums (chunks, ..) it stores."""
+        count = len(body.particles)
+        chunks = number_of_chunks(count)
+        if len(self._chunk_sums) < chunks:
+            self._chunk_sums = np.zeros((chunks, MOTION_SUMS))
+        sums = self._chunk_sums[:chunks]
+        self.team.share(chunks, self.team.size_for(count), lambda first, last: work(first, last, sums))
+        return sums
+
     def _share_images(self) -> None:
         """Periodic directions: image nodes follow their owners, on which contact and conditions acted."""
         if not len(self._images[0]):
@@ -263,9 +299,9 @@ class Simulation:
         nodal = self.nodal
         for m in range(len(self.bodies)):
             for vectors in (nodal.velocity[m], nodal.velocity_star[m], nodal.acceleration[m]):
-                kernels.copy_to_images(vectors, *self._images)
+                nodes.copy_to_images(vectors, *self._images)
             for scalars in (nodal.temperature_rate[m], self._temperature_star[m]):
-                kernels.copy_to_images(scalars.reshape(-1, 1), *self._images)
+                nodes.copy_to_images(scalars.reshape(-1, 1), *self._images)
 
     def _symmetric_forces(self) -> None:
         for m, body in enumerate(self.bodies):
@@ -303,14 +339,14 @@ class Simulation:
             return np.zeros((self.grid.number_of_nodes, 3, 3))
         sums = project_stress(self, body)
         if len(self._images[0]):
-            kernels.fold_images(sums, *self._images)
+            nodes.fold_images(sums, *self._images)
         return (sums / self.nodal.volume[m][:, None]).reshape(-1, 3, 3)
 
     # ---- on the grid ---------------------------------------------------------------------------------------
 
     def _accelerate(self, m: int, body: Body, dt: float) -> None:
         nodal = self.nodal
-        kernels.accelerate(
+        nodes.accelerate(
             nodal.mass[m],
             nodal.internal_force[m],
             nodal.external_force[m],
@@ -333,7 +369,7 @@ class Simulation:
         """Whether a node inside the domain would cross half a cell in the last step's dt."""
         half = 0.25 * sum(h * h for h in self.grid.spacing)
         inner = _inner_nodes(self.grid)
-        return any(kernels.fastest_node(v, inner) * dt * dt > half for v in self.nodal.velocity_star)
+        return any(nodes.fastest_node(v, inner) * dt * dt > half for v in self.nodal.velocity_star)
 
     def _impose_velocities(self, dt: float) -> None:
         """Conditions on v*, from which the acceleration follows anew at every node."""
@@ -341,7 +377,7 @@ class Simulation:
         for m in range(len(self.bodies)):
             self.boundary_conditions.apply_velocity(nodal.velocity_star[m], m)
             self.boundary_conditions.apply_symmetry(nodal.velocity_star[m], m)
-            kernels.rate_of_change(nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m])
+            nodes.rate_of_change(nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m])
 
     def _conduct_heat(self, dt: float) -> None:
         """Temperature rates at the nodes: conduction, sources, contact and the conditions on faces."""
@@ -349,14 +385,14 @@ class Simulation:
         nodal.temperature_rate[:] = 0.0
         if self.thermal_contact:
             capacity = np.array([body.material.specific_heat for body in self.bodies])
-            kernels.exchange_heat(nodal.mass, nodal.temperature, capacity, dt, nodal.temperature_rate)
+            nodes.exchange_heat(nodal.mass, nodal.temperature, capacity, dt, nodal.temperature_rate)
         for m in range(len(self.bodies)):
-            kernels.temperature_rate_of_heat(nodal.heat[m], nodal.mass[m], nodal.temperature_rate[m])
+            nodes.temperature_rate_of_heat(nodal.heat[m], nodal.mass[m], nodal.temperature_rate[m])
             star = self._temperature_star[m]
             np.multiply(nodal.temperature_rate[m], dt, out=star)
             star += nodal.temperature[m]
             self.boundary_conditions.apply_temperature(star, m)
-            kernels.rate_of_change(
+            nodes.rate_of_change(
                 star.reshape(-1, 1),
                 self._projected_temperature[m].reshape(-1, 1),
                 dt,
@@ -367,36 +403,51 @@ class Simulation:
 
     def _move(self, m: int, body: Body, dt: float) -> None:
         nodal, particles = self.nodal, body.particles
-        filtered, smoothed = np.zeros((0, 3)), self._smoothed[:0]
-        if self.flags.XPIC2 and not body.rigid:
-            filtered, smoothed = np.empty((len(particles), 3)), self._smoothed
-            kernels.smooth_velocity(
-                self.interpolator, self.grid.index, particles, nodal.velocity[m], filtered, smoothed
-            )
-            if len(self._images[0]):
-                kernels.fold_images(smoothed, *self._images)
-            kernels.divide_by_mass(smoothed, nodal.mass[m])
-        kernels.interleave(
+        filtered = self._filter(m, body) if self.flags.XPIC2 and not body.rigid else None
+        nodes.interleave(
             nodal.velocity_star[m],
             self._temperature_star[m],
             nodal.acceleration[m],
             nodal.temperature_rate[m],
             self._gathered,
         )
-        motion = kernels.grid_to_particles(
-            self.interpolator,
-            self.grid.index,
-            particles,
-            self._transfer(body),
-            self._gathered,
-            filtered,
-            smoothed,
-            dt,
-        )
+        options, index = self._transfer(body), self.grid.index
+
+        def move(first: int, last: int, sums: Array) -> None:
+            transfer.grid_to_particles(
+                self.interpolator,
+                index,
+                particles,
+                options,
+                self._gathered,
+                filtered is not None,
+                particles.velocity if filtered is None else filtered,
+                self._sums,
+                dt,
+                first,
+                last,
+                sums,
+            )
+
+        motion = transfer.total(self._in_chunks(body, move))
+        if filtered is not None:
+            self._sums[:] = 0.0
         self._add("KineticEnergy", body, motion.kinetic_energy)
         self._add("ThermalEnergy", body, motion.thermal_energy)
         self._add("TotalMomentum", body, np.array(motion.momentum))
         self._add("CenterOfMassPosition", body, np.array(motion.mass_position))
+
+    def _filter(self, m: int, body: Body) -> Array:
+        """XPIC(2): velocities S v of the particles (n, 3); leaves S+ S v at the nodes in the first of the sums."""
+        nodal, filtered = self.nodal, np.empty((len(body.particles), 3))
+        self._gathered[:, :3] = nodal.velocity[m]
+        transfer.smooth_velocity(
+            self.interpolator, self.grid.index, body.particles, self._gathered, filtered, self._sums
+        )
+        if len(self._images[0]):
+            nodes.fold_images(self._sums, *self._images)
+        nodes.divide_by_mass(self._sums, nodal.mass[m])
+        return filtered
 
     def _update_stress(self, body: Body, cells: Array, dt: float) -> float:
         flags = self.flags
@@ -412,17 +463,24 @@ class Simulation:
         )
         if self.flags.pressure_stabilization:
             self._average_dilatation(body, cells, dt)
-        stressed = kernels.update_stresses(
-            body.model,
-            body.state,
-            body.failure,
-            body.particles,
-            body.material,
-            step,
-            self._kinematics,
-            cells,
-            self._cell_stretch,
-        )
+
+        def update(first: int, last: int, sums: Array) -> None:
+            stress.update_stresses(
+                body.model,
+                body.state,
+                body.failure,
+                body.particles,
+                body.material,
+                step,
+                self._kinematics,
+                cells,
+                self._cell_stretch,
+                first,
+                last,
+                sums,
+            )
+
+        stressed = stress.total(self._in_chunks(body, update))
         if not stressed.finite:
             raise DivergedError(
                 f"material {body.index} ({body.name}) has a stress or position that is not a finite number "
@@ -444,12 +502,12 @@ class Simulation:
         """The volume change of each cell as a whole, for pressure stabilization."""
         volume = np.zeros(len(self._owned_cells))
         reference = np.zeros(len(self._owned_cells))
-        kernels.cell_dilatation(body.particles, cells, self._kinematics, dt, volume, reference)
+        stress.cell_dilatation(body.particles, cells, self._kinematics, dt, volume, reference)
         np.divide(volume, reference, out=self._cell_stretch, where=reference > 0.0)
 
     def _settle(self, body: Body) -> None:
         kept = np.empty(len(body.particles), dtype=np.bool_)
-        lost = kernels.settle(
+        lost = settle.settle(
             body.particles,
             self.grid.index,
             self.grid.cells,
@@ -473,11 +531,11 @@ class Simulation:
         for name in self.flags.boundary_traction_faces:
             face = name.replace("minus", "-").replace("plus", "+")
             force, volume = np.zeros(3), 0.0
-            nodes = _face_nodes(self.grid, face)
+            on_face = _face_nodes(self.grid, face)
             for m, body in enumerate(self.bodies):
                 if not body.rigid and self._is_active(body):
-                    force -= self.nodal.internal_force[m][nodes].sum(axis=0)
-                volume += float(self.nodal.volume[m][nodes].sum())
+                    force -= self.nodal.internal_force[m][on_face].sum(axis=0)
+                volume += float(self.nodal.volume[m][on_face].sum())
             self.reductions["BndyForce_" + name, -1] = force
             self.face_forces[name] = (float(force[0]), float(force[1]), float(force[2]))
             axis = FACES.index(face) // 2

@@ -333,11 +333,17 @@ class Deck:
             raise DeckError(self.diagnostics, self.sources)
         return self.specification
 
-    def run(self, output: str | os.PathLike[str] | None = None, *, max_steps: int | None = None) -> Result:
+    def run(
+        self,
+        output: str | os.PathLike[str] | None = None,
+        *,
+        max_steps: int | None = None,
+        threads: int | None = None,
+    ) -> Result:
         """Run the deck and return its result; see ``ups.session.run_deck``."""
         from ups.session import run_deck
 
-        return run_deck(self, output=output, max_steps=max_steps)
+        return run_deck(self, output=output, max_steps=max_steps, threads=threads)
 
 
 def read_deck(

@@ -36,6 +36,7 @@ def run_deck(
     *,
     output: str | os.PathLike[str] | None = None,
     max_steps: int | None = None,
+    threads: int | None = None,
     observers: Iterable[Observer] = (),
     checked: Checked | None = None,
 ) -> Result:
@@ -47,6 +48,7 @@ def run_deck(
     output : the archive, which must not exist or be an empty folder; by default ``<filebase>`` numbered as
         Uintah does, ``name.000``, with a link ``name`` to the newest.
     max_steps : the number of the step after which to stop, or None for what the deck says.
+    threads : how many threads share the work, by default one for each core; results do not depend on it.
     observers : who else watches the run (see ``ups.run.Observer``).
     checked : called once the deck is known to be good, before anything is written.
 
@@ -59,7 +61,7 @@ def run_deck(
     specification, plan = _plan(deck)
     with _problems(deck):
         directory, link = _place(specification, output)
-        simulation = _build(deck)
+        simulation = _build(deck, threads)
         if checked is not None:
             checked(deck)
         section = specification.DataArchiver
@@ -83,6 +85,7 @@ def resume_run(
     step: int | None = None,
     output: str | os.PathLike[str] | None = None,
     max_steps: int | None = None,
+    threads: int | None = None,
     overrides: Sequence[tuple[str, str]] = (),
     observers: Iterable[Observer] = (),
     checked: Checked | None = None,
@@ -94,7 +97,7 @@ def resume_run(
     archive : the archive; its ``input.xml`` is the deck.
     step : the step of the checkpoint, by default the last.
     output : a new archive; by default the old one is continued, and what it holds of later steps is removed.
-    max_steps, observers, checked : as for :func:`run_deck`; steps count from the start of the first run.
+    max_steps, threads, observers, checked : as for :func:`run_deck`; steps count from the start of the first run.
     overrides : (path of tags, new text) pairs, as for ``read_deck``.
 
     Raises
@@ -109,7 +112,7 @@ def resume_run(
     specification, plan = _plan(deck)
     with _problems(deck):
         directory = source.path if output is None else _place(specification, output)[0]
-        simulation = _build(deck)
+        simulation = _build(deck, threads)
         with _problems(None):
             state = restore(simulation, checkpoints, found)
         if checked is not None:
@@ -149,10 +152,12 @@ def _plan(deck: Deck) -> tuple[Specification, Plan]:
     return deck.require(), plan
 
 
-def _build(deck: Deck) -> Simulation:
+def _build(deck: Deck, threads: int | None) -> Simulation:
+    from solver.team import Team, available_cores
     from ups.factory import build
 
     simulation: Simulation = build(deck)
+    simulation.team = Team(threads or available_cores())
     return simulation
 
 

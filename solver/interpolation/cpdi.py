@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from solver.declare import model
 from solver.dispatch import implements, inline
 from solver.grid import GridIndex
-from solver.interpolation.shape import particle_domain, shape_functions
+from solver.interpolation.shape import particle_domain, reach, shape_functions
 from solver.tensor import Tensor, determinant
 
 
@@ -120,6 +120,20 @@ def add_corner(
                 gradients[n, 2] = alpha.z * phi
                 n += 1
     return n
+
+
+@implements(reach, Cpdi, CpdiAxisymmetric)
+def _(interpolator: Any, domain: Tensor) -> float:
+    return largest_extent(domain)
+
+
+@inline
+def largest_extent(r: Tensor) -> float:
+    """From the centre of a parallelepiped to the farthest node of the cell of a corner, at most, in cells."""
+    x = abs(r.xx) + abs(r.xy) + abs(r.xz)
+    y = abs(r.yx) + abs(r.yy) + abs(r.yz)
+    z = abs(r.zx) + abs(r.zy) + abs(r.zz)
+    return 1.0 + 0.5 * max(x, y, z)
 
 
 @implements(shape_functions, Cpdi)

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from solver.declare import model
 from solver.dispatch import implements
 from solver.grid import GridIndex
-from solver.interpolation.cpdi import Diagonal, add_corner, shortened
-from solver.interpolation.shape import particle_domain, shape_functions
+from solver.interpolation.cpdi import Diagonal, add_corner, largest_extent, shortened
+from solver.interpolation.shape import particle_domain, reach, shape_functions
 from solver.tensor import Tensor, determinant
 
 
@@ -47,6 +47,11 @@ def _(interpolator: Cpti, deformation_gradient: Tensor, size: Tensor) -> Tensor:
         c.z - a.z,
         d.z - a.z,
     )
+
+
+@implements(reach, Cpti)
+def _(interpolator: Cpti, domain: Tensor) -> float:
+    return 2.0 * largest_extent(domain)
 
 
 @implements(shape_functions, Cpti)

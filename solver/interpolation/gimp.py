@@ -9,10 +9,13 @@ from solver.declare import model
 from solver.dispatch import implements, inline
 from solver.grid import GridIndex
 from solver.interpolation.shape import particle_domain, shape_functions
+from solver.interpolation.stencil import Stencil, alone, direction, separable, stencil, undeformed
+from solver.lanes import Lanes, above
 from solver.tensor import Tensor
 
 
 @model("interpolator", "gimp")
+@separable
 class Gimp(NamedTuple):
     """Particles are boxes of their initial size; S is the hat function averaged over the box."""
 
@@ -26,95 +29,34 @@ class GimpAxisymmetric(NamedTuple):
     """Averages over the particle's cross-section weighted with the radius (Nairn and Guilkey 2015)."""
 
 
-@implements(particle_domain, Gimp, GimpAxisymmetric)
-def _(interpolator: Any, deformation_gradient: Tensor, size: Tensor) -> Tensor:
-    return size
+implements(particle_domain, GimpAxisymmetric)(undeformed)
 
 
-class Axis(NamedTuple):
-    """Weights and gradients (per cell) in one direction on the nodes i, i + 1 and i + third."""
-
-    third: int
-    w0: float
-    w1: float
-    w2: float
-    g0: float
-    g1: float
-    g2: float
+@implements(direction, Gimp)
+def _(interpolator: Gimp, f: Lanes, width: Lanes) -> Stencil:
+    return averaged_hat(f, 0.5 * width)
 
 
 @inline
-def averaged_hat(f: float, half: float) -> Axis:
+def averaged_hat(f: Lanes, half: Lanes) -> Stencil:
     """The hat function averaged over [f - half, f + half], 0 <= f < 1 measured from node i in cells.
 
     Where the particle reaches over node i by a, or over node i + 1 by b, the linear weights 1 - f and f lose
     twice a^2 / 4 half (or b^2 / 4 half) at that node and its neighbours on both sides gain it.
     """
     # Measured from the far node, as Uintah does: at a touch, rounding decides alike whether that node takes part.
-    a = 1.0 + half - (f + 1.0) if f <= half else 0.0
-    b = 1.0 + half + (f - 2.0) if f > 1.0 - half else 0.0
+    a = (1.0 + half - (f + 1.0)) * (1.0 - above(f, half))
+    b = (1.0 + half + (f - 2.0)) * above(f, 1.0 - half)
     q = 0.25 / half
-    return Axis(
-        -1 if a > 0.0 else 2,
+    return stencil(
+        above(a, 0.0),
         1.0 - f - (2.0 * a * a - b * b) * q,
         f + (a * a - 2.0 * b * b) * q,
         (a * a + b * b) * q,
-        -1.0 + (4.0 * a + 2.0 * b) * q,
+        (4.0 * a + 2.0 * b) * q - 1.0,
         1.0 - (2.0 * a + 4.0 * b) * q,
         2.0 * (b - a) * q,
     )
-
-
-@inline
-def tensor_product(
-    grid: GridIndex, first: int, X: Axis, Y: Axis, Z: Axis, nodes: Any, weights: Any, gradients: Any
-) -> int:
-    """Products of the weights of three directions, without the nodes whose weight is zero."""
-    row = grid.nodes[0]
-    layer = row * grid.nodes[1]
-    ix, iy, iz = 1.0 / grid.spacing[0], 1.0 / grid.spacing[1], 1.0 / grid.spacing[2]
-    wx, gx, ox = (X.w0, X.w1, X.w2), (X.g0 * ix, X.g1 * ix, X.g2 * ix), (0, 1, X.third)
-    wy, gy, oy = (Y.w0, Y.w1, Y.w2), (Y.g0 * iy, Y.g1 * iy, Y.g2 * iy), (0, row, Y.third * row)
-    wz, gz, oz = (Z.w0, Z.w1, Z.w2), (Z.g0 * iz, Z.g1 * iz, Z.g2 * iz), (0, layer, Z.third * layer)
-    count_x = 3 if X.w2 > 0.0 else 2
-    count_y = 3 if Y.w2 > 0.0 else 2
-    count_z = 3 if Z.w2 > 0.0 else 2
-    n = 0
-    for c in range(count_z):
-        for b in range(count_y):
-            wyz, gyz, wgz = wy[b] * wz[c], gy[b] * wz[c], wy[b] * gz[c]
-            base = first + oy[b] + oz[c]
-            for a in range(count_x):
-                nodes[n] = base + ox[a]
-                weights[n] = wx[a] * wyz
-                gradients[n, 0] = gx[a] * wyz
-                gradients[n, 1] = wx[a] * gyz
-                gradients[n, 2] = wx[a] * wgz
-                n += 1
-    return n
-
-
-@implements(shape_functions, Gimp)
-def _(
-    interpolator: Gimp,
-    grid: GridIndex,
-    x: float,
-    y: float,
-    z: float,
-    domain: Tensor,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    qx = (x - grid.anchor[0]) / grid.spacing[0]
-    qy = (y - grid.anchor[1]) / grid.spacing[1]
-    qz = (z - grid.anchor[2]) / grid.spacing[2]
-    i, j, k = math.floor(qx), math.floor(qy), math.floor(qz)
-    X = averaged_hat(qx - i, 0.5 * domain.xx)
-    Y = averaged_hat(qy - j, 0.5 * domain.yy)
-    Z = averaged_hat(qz - k, 0.5 * domain.zz)
-    first = (i - grid.first[0]) + grid.nodes[0] * ((j - grid.first[1]) + grid.nodes[1] * (k - grid.first[2]))
-    return tensor_product(grid, first, X, Y, Z, nodes, weights, gradients)
 
 
 class Radial(NamedTuple):
@@ -230,29 +172,29 @@ def _(
     weights: Any,
     gradients: Any,
 ) -> int:
-    hx, hy = grid.spacing[0], grid.spacing[1]
-    qx, qy = (x - grid.anchor[0]) / hx, (y - grid.anchor[1]) / hy
-    i, j = math.floor(qx), math.floor(qy)
+    hx = grid.spacing[0]
+    qx = (x - grid.anchor[0]) / hx
+    i = math.floor(qx)
     radius = grid.anchor[0] + i * hx
     third = -1 if qx - i <= 0.5 else 2
     R = radial_average(2.0 / hx * (x - radius), radius / hx, third, 0.5 * domain.xx, x, hx)
-    Y = averaged_hat(qy - j, 0.5 * domain.yy)
+    Y = alone(Gimp(), grid, 1, y, domain.yy)
     row = grid.nodes[0]
     layer = row * grid.nodes[1]
-    first = (i - grid.first[0]) + row * (j - grid.first[1]) - layer * grid.first[2]
+    first = (i - grid.first[0]) + row * Y.first - layer * grid.first[2]
     w, v, ox = (R.w0, R.w1, R.w2), (R.v0, R.v1, R.w2), (0, 1, R.third)
     g, t = (R.g0 / hx, R.g1 / hx, R.g2 / hx), (R.t0, R.t1, R.t2)
-    wy, gy, oy = (Y.w0, Y.w1, Y.w2), (Y.g0 / hy, Y.g1 / hy, Y.g2 / hy), (0, row, Y.third * row)
     n = 0
-    for b in range(3):
+    for b in range(Y.nodes):
+        wy, gy = Y.w[b], Y.g[b]
         for a in range(3):
-            if w[a] * wy[b] <= 0.0:
+            if w[a] * wy <= 0.0:
                 continue
             for c in range(2):
-                nodes[n] = first + ox[a] + oy[b] + layer * c
-                weights[n] = 0.5 * w[a] * wy[b]
-                gradients[n, 0] = g[a] * wy[b]
-                gradients[n, 1] = 0.5 * v[a] * gy[b]
-                gradients[n, 2] = 0.5 * t[a] * wy[b]
+                nodes[n] = first + ox[a] + row * b + layer * c
+                weights[n] = 0.5 * w[a] * wy
+                gradients[n, 0] = g[a] * wy
+                gradients[n, 1] = 0.5 * v[a] * gy
+                gradients[n, 2] = 0.5 * t[a] * wy
                 n += 1
     return n

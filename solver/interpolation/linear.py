@@ -6,15 +6,18 @@ import math
 from typing import Any, NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements
 from solver.grid import GridIndex
 from solver.interpolation.shape import particle_domain, shape_functions
+from solver.interpolation.stencil import Stencil, direction, nodes_across, separable, undeformed
+from solver.lanes import Lanes, every
 from solver.tensor import Tensor
 
 
 @model("interpolator", "linear")
+@separable
 class Linear(NamedTuple):
-    """Particles are points: S is the product of the hat functions 1 - |x - x_i| / dx of the three directions."""
+    """Particles are points: S is the product of the hat functions 1 - |x - x_i| / dx of the three direction."""
 
     @staticmethod
     def for_deck(axisymmetric: bool, critical_length: float) -> Linear | LinearAxisymmetric:
@@ -26,51 +29,18 @@ class LinearAxisymmetric(NamedTuple):
     """Bilinear in (r, z) = (x, y); the two layers of nodes of the one cell in the third direction share alike."""
 
 
-@implements(particle_domain, Linear, LinearAxisymmetric)
-def _(interpolator: Any, deformation_gradient: Tensor, size: Tensor) -> Tensor:
-    return size
+implements(particle_domain, LinearAxisymmetric)(undeformed)
 
 
-@inline
-def trilinear(grid: GridIndex, x: float, y: float, z: float, nodes: Any, weights: Any, gradients: Any) -> int:
-    """Weights and gradients of the eight nodes of the cell that holds a point."""
-    hx, hy, hz = grid.spacing
-    qx, qy, qz = (x - grid.anchor[0]) / hx, (y - grid.anchor[1]) / hy, (z - grid.anchor[2]) / hz
-    i, j, k = math.floor(qx), math.floor(qy), math.floor(qz)
-    fx, fy, fz = qx - i, qy - j, qz - k
-    row = grid.nodes[0]
-    layer = row * grid.nodes[1]
-    first = (i - grid.first[0]) + row * (j - grid.first[1]) + layer * (k - grid.first[2])
-    ix, iy, iz = 1.0 / hx, 1.0 / hy, 1.0 / hz
-    n = 0
-    for a in range(2):
-        wx, gx = (fx, ix) if a else (1.0 - fx, -ix)
-        for b in range(2):
-            wy, gy = (fy, iy) if b else (1.0 - fy, -iy)
-            for c in range(2):
-                wz, gz = (fz, iz) if c else (1.0 - fz, -iz)
-                nodes[n] = first + a + row * b + layer * c
-                weights[n] = wx * wy * wz
-                gradients[n, 0] = wy * wz * gx
-                gradients[n, 1] = wx * wz * gy
-                gradients[n, 2] = wx * wy * gz
-                n += 1
-    return n
+@implements(nodes_across, Linear)
+def _(interpolator: Linear) -> int:
+    return 2
 
 
-@implements(shape_functions, Linear)
-def _(
-    interpolator: Linear,
-    grid: GridIndex,
-    x: float,
-    y: float,
-    z: float,
-    domain: Tensor,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    return trilinear(grid, x, y, z, nodes, weights, gradients)
+@implements(direction, Linear)
+def _(interpolator: Linear, f: Lanes, width: Lanes) -> Stencil:
+    none, one = every(0.0), every(1.0)
+    return Stencil(none, 1.0 - f, f, none, -1.0 * one, one, none)
 
 
 @implements(shape_functions, LinearAxisymmetric)

@@ -15,8 +15,8 @@ import {first}
 import {second}
 import numba
 from solver.particles import Particles
-import solver.kernels
-print(numba.config.CACHE_DIR, numba.config.SLP_VECTORIZE, solver.kernels.settle.stats.cache_path)
+import solver.kernels.settle
+print(numba.config.CACHE_DIR, numba.config.SLP_VECTORIZE, solver.kernels.settle.settle.stats.cache_path)
 """
 
 

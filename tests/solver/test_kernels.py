@@ -12,10 +12,10 @@ import reference
 from mpm_cases import MATERIAL, elastic, fill, make_body, make_grid, make_particles, make_simulation
 from scipy.linalg import expm
 
-from solver import kernels
 from solver.interpolation.gimp import Gimp, GimpAxisymmetric
 from solver.jit import kernel
-from solver.kernels import Kinematics
+from solver.kernels import nodes, settle, stress
+from solver.kernels.stress import STRESS_SUMS, Kinematics
 from solver.materials.constitutive import DELETE, NoState, Step
 from solver.materials.failure import new_failure
 from solver.materials.rigid import Rigid
@@ -232,7 +232,7 @@ def test_acceleration():
     internal, external, velocity = random.normal(size=(3, 3, 3))
     acceleration, velocity_star = np.empty((2, 3, 3))
     gravity = (0.0, -9.81, 1.0)
-    kernels.accelerate(mass, internal, external, velocity, acceleration, velocity_star, gravity, 0.3, 0.5, DT)
+    nodes.accelerate(mass, internal, external, velocity, acceleration, velocity_star, gravity, 0.3, 0.5, DT)
     expected = np.tile(gravity, (3, 1))
     expected[0] += (internal[0] + external[0]) / 2.0 - 0.3 * velocity[0]
     np.testing.assert_allclose(acceleration, expected, rtol=1e-14)
@@ -242,7 +242,7 @@ def test_acceleration():
 def test_materials_in_thermal_contact_reach_one_temperature_and_keep_their_heat():
     mass, temperature = np.array([[1.0, 2.0], [3.0, EMPTY_MASS]]), np.array([[300.0, 310.0], [400.0, 0.0]])
     heats, rate = np.array([2.0, 5.0]), np.zeros((2, 2))
-    kernels.exchange_heat(mass, temperature, heats, DT, rate)
+    nodes.exchange_heat(mass, temperature, heats, DT, rate)
     after = temperature + DT * rate
     np.testing.assert_allclose(after[0], after[1])
     np.testing.assert_allclose(after[:, 0], (2 * 300 + 15 * 400) / 17)
@@ -252,15 +252,15 @@ def test_materials_in_thermal_contact_reach_one_temperature_and_keep_their_heat(
 
 def test_fastest_node():
     velocity = np.array([[3.0, 4.0, 0.0], [10.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    assert kernels.fastest_node(velocity, np.array([True, False, True])) == 25.0
-    assert kernels.fastest_node(velocity, np.zeros(3, dtype=np.bool_)) == 0.0
+    assert nodes.fastest_node(velocity, np.array([True, False, True])) == 25.0
+    assert nodes.fastest_node(velocity, np.zeros(3, dtype=np.bool_)) == 0.0
 
 
 def test_images_add_to_their_owners_and_follow_them():
     sums = np.arange(8.0).reshape(4, 2)
-    kernels.fold_images(sums, np.array([0, 1]), np.array([2, 3]))
+    nodes.fold_images(sums, np.array([0, 1]), np.array([2, 3]))
     np.testing.assert_array_equal(sums, [[4, 6], [8, 10], [4, 6], [8, 10]])
-    kernels.copy_to_images(sums, np.array([1, 0]), np.array([2, 3]))
+    nodes.copy_to_images(sums, np.array([1, 0]), np.array([2, 3]))
     np.testing.assert_array_equal(sums, [[4, 6], [8, 10], [8, 10], [4, 6]])
 
 
@@ -331,7 +331,7 @@ L_GENERAL = np.array([[0.4, -0.9, 0.2], [0.7, -0.3, 0.5], [-0.1, 0.6, 0.2]])
 @kernel
 def deformed(F, L, dt, subcycles):
     """F after a step, as an array."""
-    new = kernels.new_deformation_gradient(tensor_at(F, 0), tensor_at(L, 0), dt, subcycles)
+    new = stress.new_deformation_gradient(tensor_at(F, 0), tensor_at(L, 0), dt, subcycles)
     out = np.empty((1, 3, 3))
     put_tensor(out, 0, new)
     return out
@@ -404,11 +404,12 @@ def step_of(dt=DT):
     return Step(dt, 0.0, 1.0, False, 0.2, 2.0, False)
 
 
-def stress(particles, subcycles=1, stabilized=False, cells=None, cell_stretch=None, dt=DT):
+def update(particles, subcycles=1, stabilized=False, cells=None, cell_stretch=None, dt=DT):
     cells = np.zeros(0, np.int64) if cells is None else cells
     cell_stretch = np.zeros(0) if cell_stretch is None else cell_stretch
     kinematics = Kinematics(subcycles, stabilized)
-    return kernels.update_stresses(
+    sums = np.empty((1, STRESS_SUMS))
+    stress.update_stresses(
         MODEL,
         NoState(),
         new_failure(None, None, 0),
@@ -418,7 +419,11 @@ def stress(particles, subcycles=1, stabilized=False, cells=None, cell_stretch=No
         kinematics,
         cells,
         cell_stretch,
+        0,
+        1,
+        sums,
     )
+    return stress.total(sums)
 
 
 def moving_particles(count=30, seed=2):
@@ -431,7 +436,7 @@ def test_volume_follows_the_deformation_and_stress_the_model():
     particles = moving_particles()
     volume, L = particles.volume.copy(), particles.velocity_gradient.copy()
     particles.old_velocity[:, 1] = -2.0
-    sums = stress(particles)
+    sums = update(particles)
     F = np.eye(3) + DT * L
     np.testing.assert_allclose(particles.deformation_gradient, F, atol=1e-15)
     np.testing.assert_allclose(particles.volume, volume * np.linalg.det(F), rtol=1e-14)
@@ -453,7 +458,7 @@ def test_volume_follows_the_deformation_and_stress_the_model():
 def test_temperature_takes_the_rate_of_the_grid():
     particles = moving_particles()
     particles.temperature_rate[:] = 50.0
-    stress(particles)
+    update(particles)
     np.testing.assert_allclose(particles.temperature, MATERIAL.room_temperature + 50.0 * DT)
     assert (particles.previous_temperature == MATERIAL.room_temperature).all()
     assert (particles.heating_rate == 0.0).all()
@@ -463,13 +468,13 @@ def test_temperature_takes_the_rate_of_the_grid():
 def test_positions_that_are_not_finite_are_noticed(component):
     particles = moving_particles()
     particles.position[7, component] = np.nan
-    assert not stress(particles).finite
+    assert not update(particles).finite
 
 
 def test_stresses_that_are_not_finite_are_noticed():
     particles = moving_particles()
     particles.stress[7, 1, 1] = np.inf
-    assert not stress(particles).finite
+    assert not update(particles).finite
 
 
 def test_pressure_stabilization_gives_every_particle_the_volume_change_of_its_cell():
@@ -478,8 +483,8 @@ def test_pressure_stabilization_gives_every_particle_the_volume_change_of_its_ce
     cells = np.random.default_rng(4).integers(0, 3, 30)
     kinematics = Kinematics(1, True)
     volume, reference_volume = np.empty(4), np.empty(4)
-    kernels.cell_dilatation(stabilized, cells, kinematics, DT, volume, reference_volume)
-    stress(plain)
+    stress.cell_dilatation(stabilized, cells, kinematics, DT, volume, reference_volume)
+    update(plain)
     J = np.linalg.det(plain.deformation_gradient)
     for cell in range(3):
         inside = cells == cell
@@ -487,7 +492,7 @@ def test_pressure_stabilization_gives_every_particle_the_volume_change_of_its_ce
         assert reference_volume[cell] == pytest.approx((plain.volume / J)[inside].sum())
     assert volume[3] == reference_volume[3] == 0.0
     stretch = np.divide(volume, reference_volume, out=np.ones(4), where=reference_volume > 0)
-    stress(stabilized, stabilized=True, cells=cells, cell_stretch=stretch)
+    update(stabilized, stabilized=True, cells=cells, cell_stretch=stretch)
     np.testing.assert_allclose(np.linalg.det(stabilized.deformation_gradient), stretch[cells], rtol=1e-13)
     np.testing.assert_array_equal(stabilized.volume, plain.volume)
     scaled = plain.deformation_gradient * np.cbrt(stretch[cells] / J)[:, None, None]
@@ -507,7 +512,7 @@ def settled(positions, grid=BOX, owned=EVERYWHERE, least_mass=0.0, **values):
     for name, value in values.items():
         getattr(particles, name)[:] = value
     kept = np.empty(len(particles), dtype=np.bool_)
-    lost = kernels.settle(particles, grid.index, grid.cells, grid.periodic, owned, least_mass, kept)
+    lost = settle.settle(particles, grid.index, grid.cells, grid.periodic, owned, least_mass, kept)
     assert lost == np.count_nonzero(~kept)
     return kept, particles
 
@@ -567,5 +572,5 @@ def test_a_particle_a_rounding_error_outside_a_periodic_face_is_brought_back():
 
 def test_initial_wave_speed():
     velocity, speed = np.array([[1.0, -5.0, 0.0], [-2.0, 0.0, 0.5]]), np.array([10.0, 12.0])
-    assert kernels.initial_wave_speed(velocity, speed) == (14.0, 15.0, 12.5)
-    assert kernels.initial_wave_speed(np.empty((0, 3)), np.empty(0)) == (1e-12,) * 3
+    assert settle.initial_wave_speed(velocity, speed) == (14.0, 15.0, 12.5)
+    assert settle.initial_wave_speed(np.empty((0, 3)), np.empty(0)) == (1e-12,) * 3

@@ -11,12 +11,19 @@ from scipy.integrate import quad
 from shape_cases import GRID, PLANE, SIZES, Rows, sample_deformations, sample_positions
 
 from solver.interpolation.gimp import Gimp, GimpAxisymmetric, averaged_hat
+from solver.lanes import every
+
+
+def one_direction(f, half):
+    """Nodes counted from the lower one of the cell, weights and slopes of the averaged hat."""
+    s = averaged_hat(every(f), every(half))
+    weights, slopes = ([lanes[0] for lanes in part] for part in ((s.w0, s.w1, s.w2), (s.g0, s.g1, s.g2)))
+    return np.arange(3) - s.below[0], np.array(weights), np.array(slopes)
 
 
 @given(st.floats(0.0, 1.0, exclude_max=True), st.floats(0.01, 0.5))
 def test_averaged_hat_is_the_mean_of_the_hat_function(f, half):
-    axis = averaged_hat(f, half)
-    for node, weight, slope in zip((0, 1, axis.third), axis[1:4], axis[4:], strict=True):
+    for node, weight, slope in zip(*one_direction(f, half), strict=True):
         low, high = f - half - node, f + half - node
         kinks = [k for k in (-1.0, 0.0, 1.0) if low < k < high]
         mean = quad(reference.hat, low, high, points=kinks or None)[0] / (2 * half)
@@ -27,8 +34,7 @@ def test_averaged_hat_is_the_mean_of_the_hat_function(f, half):
 
 @given(st.floats(0.0, 1.0, exclude_max=True), st.floats(0.01, 0.5))
 def test_one_direction_reproduces_lines(f, half):
-    axis = averaged_hat(f, half)
-    weights, slopes, nodes = np.array(axis[1:4]), np.array(axis[4:]), np.array([0, 1, axis.third])
+    nodes, weights, slopes = one_direction(f, half)
     assert weights.min() >= 0.0
     np.testing.assert_allclose(
         [weights.sum(), weights @ nodes, slopes.sum(), slopes @ nodes], [1, f, 0, 1], atol=1e-11

@@ -24,7 +24,7 @@ from test_thermal_properties import BPS, HMX, MTS, NP, PTW, SCG, SCG_MELT
 from test_yield_condition import GURSON, ROUSSELIER
 
 from solver.declare import FAMILIES
-from solver.kernels import Kinematics, update_stresses
+from solver.kernels.stress import STRESS_SUMS, Kinematics, total, update_stresses
 from solver.materials.comp_neo_hook import CompNeoHook, CompNeoHookPlastic
 from solver.materials.constitutive import DELETE, Material, Step, initialize, state_record
 from solver.materials.damage import for_constitutive_model, initialize_damage
@@ -186,7 +186,8 @@ class Specimen:
         step = Step(dt, self.time, 1.0e-3, True, 0.2, 2.0, True)
         update = update_stresses if compiled else update_stresses.py_func
         self.time += dt
-        return update(
+        sums = np.empty((1, STRESS_SUMS))
+        update(
             self.model,
             self.state,
             self.failure,
@@ -196,7 +197,11 @@ class Specimen:
             Kinematics(1, False),
             np.zeros(1, np.int64),
             np.ones(1),
+            0,
+            1,
+            sums,
         )
+        return total(sums)
 
 
 DEFORMATION = np.array([[4000.0, 2500.0, 0.0], [-500.0, -3000.0, 800.0], [0.0, 300.0, -800.0]])

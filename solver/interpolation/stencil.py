@@ -1,0 +1,286 @@
+"""Shape functions that are products of weights of the three directions."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from solver.dispatch import generic, generic_with_default, implements, inline
+from solver.grid import GridIndex, NodeBlock
+from solver.interpolation.shape import (
+    Content,
+    Gathered,
+    Room,
+    gather,
+    is_near,
+    nothing,
+    particle_domain,
+    prepare,
+    scatter,
+    shape_functions,
+)
+from solver.lanes import Lanes, above, every, floor, lanes_at, put_lanes
+from solver.particles import Particles
+from solver.tensor import Tensor
+
+
+class Stencil(NamedTuple):
+    """Weights of eight particles, one a lane, in one direction on up to three nodes next to each other."""
+
+    below: Lanes
+    """Nodes from the lower node of the particle's cell down to the first of the three: 0 or 1."""
+    w0: Lanes
+    w1: Lanes
+    w2: Lanes
+    """May be zero."""
+    g0: Lanes
+    """Derivatives of the weights, per cell."""
+    g1: Lanes
+    g2: Lanes
+
+
+@inline
+def stencil(outer: Lanes, w0: Lanes, w1: Lanes, w2: Lanes, g0: Lanes, g1: Lanes, g2: Lanes) -> Stencil:
+    """Put the third weight below the two of the cell, where ``outer`` is 1, or above them, where it is 0."""
+    inner = 1.0 - outer
+    return Stencil(
+        outer,
+        outer * w2 + inner * w0,
+        outer * w0 + inner * w1,
+        outer * w1 + inner * w2,
+        outer * g2 + inner * g0,
+        outer * g0 + inner * g1,
+        outer * g1 + inner * g2,
+    )
+
+
+@generic
+def direction(interpolator: Any, f: Lanes, width: Lanes) -> Stencil:
+    """The weights of particles that wide, 0 <= f < 1 from the lower node of their cell; both in cells."""
+    raise NotImplementedError
+
+
+@generic_with_default
+def nodes_across(interpolator: Any) -> int:
+    """The nodes in a direction, those of no weight included: 3, or 2 where the third weight is always zero."""
+    return 3
+
+
+W, G, FIRST, COUNT = 0, 3, 6, 7
+"""Rows of ``Room.factors`` of one direction, counted from 8 times its axis: three weights, their derivatives in
+1/length, the first node and the number of nodes that count."""
+
+
+@inline
+def prepare_direction(
+    interpolator: Any, grid: GridIndex, particles: Particles, first: int, axis: int, factors: Any
+) -> None:
+    """Store the weights of the particles ``first`` to ``first + 7`` in one direction."""
+    last, anchor, h = particles.mass.shape[0] - 1, grid.anchor[axis], grid.spacing[axis]
+    x, size = particles.position, particles.size
+    a, b, c, d = first, min(first + 1, last), min(first + 2, last), min(first + 3, last)
+    e, f, g, i = min(first + 4, last), min(first + 5, last), min(first + 6, last), min(first + 7, last)
+    positions = Lanes(
+        x[a, axis], x[b, axis], x[c, axis], x[d, axis], x[e, axis], x[f, axis], x[g, axis], x[i, axis]
+    )
+    widths = Lanes(
+        size[a, axis, axis],
+        size[b, axis, axis],
+        size[c, axis, axis],
+        size[d, axis, axis],
+        size[e, axis, axis],
+        size[f, axis, axis],
+        size[g, axis, axis],
+        size[i, axis, axis],
+    )
+    q = (positions - anchor) / h
+    cell = floor(q)
+    s = direction(interpolator, q - cell, widths)
+    row, per_length = 8 * axis, 1.0 / h
+    put_lanes(factors, row + W, 0, s.w0)
+    put_lanes(factors, row + W + 1, 0, s.w1)
+    put_lanes(factors, row + W + 2, 0, s.w2)
+    put_lanes(factors, row + G, 0, s.g0 * per_length)
+    put_lanes(factors, row + G + 1, 0, s.g1 * per_length)
+    put_lanes(factors, row + G + 2, 0, s.g2 * per_length)
+    put_lanes(factors, row + FIRST, 0, cell - s.below - float(grid.first[axis]))
+    put_lanes(factors, row + COUNT, 0, above(s.w2, 0.0) + 2.0)
+
+
+@inline
+def prepare_product(interpolator: Any, grid: GridIndex, particles: Particles, first: int, room: Room) -> None:
+    """The weights of eight particles in the three directions; short chains of divisions, side by side."""
+    prepare_direction(interpolator, grid, particles, first, 0, room.factors)
+    prepare_direction(interpolator, grid, particles, first, 1, room.factors)
+    prepare_direction(interpolator, grid, particles, first, 2, room.factors)
+
+
+class Corner(NamedTuple):
+    """The first node (i, j, k) of a particle, counted in storage, and how many it has in y and z."""
+
+    i: int
+    j: int
+    k: int
+    count_y: int
+    count_z: int
+
+
+@inline
+def corner(factors: Any, lane: int) -> Corner:
+    """The nodes of a prepared particle."""
+    return Corner(
+        int(factors[FIRST, lane]),
+        int(factors[8 + FIRST, lane]),
+        int(factors[16 + FIRST, lane]),
+        int(factors[8 + COUNT, lane]),
+        int(factors[16 + COUNT, lane]),
+    )
+
+
+@inline
+def product_is_near(
+    interpolator: Any, grid: GridIndex, block: NodeBlock, particles: Particles, p: int, lane: int, room: Room
+) -> bool:
+    """As ``is_near``, for a prepared particle."""
+    if block.whole:
+        return True
+    at = corner(room.factors, lane)
+    low, high = block.low, block.high
+    return at.j < high[1] and low[1] < at.j + at.count_y and at.k < high[2] and low[2] < at.k + at.count_z
+
+
+@inline
+def scatter_product(
+    interpolator: Any,
+    grid: GridIndex,
+    block: NodeBlock,
+    particles: Particles,
+    p: int,
+    lane: int,
+    content: Content,
+    sums: Any,
+    room: Room,
+) -> None:
+    """As ``scatter``, row of nodes by row: what the nodes of a row have in common is multiplied once.
+
+    A row is never divided, so blocks have to be slabs across y or z.
+    """
+    factors = room.factors
+    at = corner(factors, lane)
+    low, high = block.low, block.high
+    for c in range(max(0, low[2] - at.k), min(at.count_z, high[2] - at.k)):
+        wz, gz = factors[16 + W + c, lane], factors[16 + G + c, lane]
+        for b in range(max(0, low[1] - at.j), min(at.count_y, high[1] - at.j)):
+            wy, gy = factors[8 + W + b, lane], factors[8 + G + b, lane]
+            plain = content.plain * (wy * wz)
+            mixed = content.mixed * (wy * wz) + content.by_y * (gy * wz) + content.by_z * (wy * gz)
+            by_x = content.by_x * (wy * wz)
+            row = np.uint64(at.i + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
+            for a in range(nodes_across(interpolator)):
+                node, wx, gx = row + np.uint64(a), factors[W + a, lane], factors[G + a, lane]
+                put_lanes(sums, node, 0, lanes_at(sums, node, 0) + plain * wx)
+                put_lanes(sums, node, 8, lanes_at(sums, node, 8) + mixed * wx + by_x * gx)
+
+
+@inline
+def gather_product(
+    interpolator: Any, grid: GridIndex, particles: Particles, p: int, lane: int, rows: Any, room: Room
+) -> Gathered:
+    """As ``gather``, row of nodes by row."""
+    factors = room.factors
+    at = corner(factors, lane)
+    value, by_x, by_y, by_z = nothing(), nothing(), nothing(), nothing()
+    for c in range(at.count_z):
+        wz, gz = factors[16 + W + c, lane], factors[16 + G + c, lane]
+        for b in range(at.count_y):
+            wy, gy = factors[8 + W + b, lane], factors[8 + G + b, lane]
+            along, slope = nothing(), nothing()
+            row = np.uint64(at.i + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
+            for a in range(nodes_across(interpolator)):
+                nodal = lanes_at(rows, row + np.uint64(a), 0)
+                along = along + nodal * factors[W + a, lane]
+                slope = slope + nodal * factors[G + a, lane]
+            value = value + along * (wy * wz)
+            by_x = by_x + slope * (wy * wz)
+            by_y = by_y + along * (gy * wz)
+            by_z = by_z + along * (wy * gz)
+    return Gathered(value, by_x, by_y, by_z)
+
+
+class Alone(NamedTuple):
+    """Weights of one particle in one direction."""
+
+    first: int
+    """The first node, counted in storage."""
+    nodes: int
+    """How many count: 2 where the third weight is zero."""
+    w: tuple[float, float, float]
+    g: tuple[float, float, float]
+    """Derivatives in 1/length."""
+
+
+@inline
+def alone(interpolator: Any, grid: GridIndex, axis: int, x: float, width: float) -> Alone:
+    """The weights in one direction of a particle at ``x``."""
+    q = (x - grid.anchor[axis]) / grid.spacing[axis]
+    cell = math.floor(q)
+    s, h = direction(interpolator, every(q - cell), every(width)), grid.spacing[axis]
+    return Alone(
+        cell - int(s.below[0]) - grid.first[axis],
+        3 if s.w2[0] > 0.0 else 2,
+        (s.w0[0], s.w1[0], s.w2[0]),
+        (s.g0[0] / h, s.g1[0] / h, s.g2[0] / h),
+    )
+
+
+@inline
+def product_shape_functions(
+    interpolator: Any,
+    grid: GridIndex,
+    x: float,
+    y: float,
+    z: float,
+    domain: Tensor,
+    nodes: Any,
+    weights: Any,
+    gradients: Any,
+) -> int:
+    """Products of the weights of three directions, without the third nodes whose weight is zero."""
+    X = alone(interpolator, grid, 0, x, domain.xx)
+    Y = alone(interpolator, grid, 1, y, domain.yy)
+    Z = alone(interpolator, grid, 2, z, domain.zz)
+    n = 0
+    for c in range(Z.nodes):
+        for b in range(Y.nodes):
+            wyz, gyz, wgz = Y.w[b] * Z.w[c], Y.g[b] * Z.w[c], Y.w[b] * Z.g[c]
+            first = X.first + grid.nodes[0] * (Y.first + b + grid.nodes[1] * (Z.first + c))
+            for a in range(X.nodes):
+                nodes[n] = first + a
+                weights[n] = X.w[a] * wyz
+                gradients[n, 0] = X.g[a] * wyz
+                gradients[n, 1] = X.w[a] * gyz
+                gradients[n, 2] = X.w[a] * wgz
+                n += 1
+    return n
+
+
+Interpolator = TypeVar("Interpolator", bound=type)
+
+
+def separable(interpolator: Interpolator) -> Interpolator:
+    """Class decorator: shape functions are products of what the class implements as ``direction``."""
+    implements(particle_domain, interpolator)(undeformed)
+    implements(shape_functions, interpolator)(product_shape_functions)
+    implements(prepare, interpolator)(prepare_product)
+    implements(is_near, interpolator)(product_is_near)
+    implements(scatter, interpolator)(scatter_product)
+    implements(gather, interpolator)(gather_product)
+    return interpolator
+
+
+@inline
+def undeformed(interpolator: Any, deformation_gradient: Tensor, size: Tensor) -> Tensor:
+    """The domain of particles that keep their initial size."""
+    return size
