@@ -30,7 +30,7 @@ from solver.materials.distribution.constant import Constant
 from solver.materials.equation_of_state import isentropic_heating, mean_stress
 from solver.materials.equation_of_state.default_hyper import DefaultHyper
 from solver.materials.failure import plastic_strain_rate
-from solver.materials.flow_stress import flow_stress, hardening_slope
+from solver.materials.flow_stress import flow_stress, hardening_slope, in_step
 from solver.materials.melting import melting_temperature
 from solver.materials.melting.constant_melting import ConstantMelting
 from solver.materials.metal_parameters import (
@@ -405,7 +405,8 @@ def deviatoric_flow(
         return Flow(zero, False, True, start.plastic_strain, 0.0, 0.0, 0.0, zero)
     expected_strain = start.plastic_strain + start.plastic_strain_rate * dt
     expected = at_plastic_strain(start, expected_strain, start.plastic_strain_rate)
-    sigma_y = flow_stress(model.flow_model, expected)
+    flow_model = in_step(model.flow_model, start)
+    sigma_y = flow_stress(flow_model, expected)
     stress_trace = 3.0 * start.mean_stress + motion.dilatation_rate * (2.0 * start.shear_modulus * dt)
     porosity = state.porosity[p]
     equivalent = math.sqrt(1.5) * norm(trial)
@@ -422,7 +423,7 @@ def deviatoric_flow(
         porosity,
         stiffness,
     )
-    end = return_to_yield(model.plastic_convergence_algo, model.flow_model, start, plastic_trial, dt)
+    end = return_to_yield(model.plastic_convergence_algo, flow_model, start, plastic_trial, dt)
     return plastic_flow(end)
 
 

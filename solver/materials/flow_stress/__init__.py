@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from solver.declare import family
-from solver.dispatch import generic
+from solver.dispatch import generic, generic_with_default
 from solver.materials.plasticity_state import PlasticityState
 
 FLOW_STRESS = family(
@@ -34,3 +34,13 @@ def hardening_slope(model: Any, state: PlasticityState) -> float:
 def rate_slope(model: Any, state: PlasticityState) -> float:
     """Derivative of the flow stress by the strain rate, as the Newton iteration of the return uses it."""
     raise NotImplementedError
+
+
+@generic_with_default
+def in_step(model: Any, state: PlasticityState) -> Any:
+    """The model for one particle in one step, in which only plastic strain and its rate are still to be found.
+
+    A model whose factors of temperature and total rate are costly gives a record that holds them, with its own
+    ``flow_stress``, ``hardening_slope`` and ``rate_slope``; others are used as they are.
+    """
+    return model

@@ -7,7 +7,7 @@ from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
 from solver.dispatch import implements, inline
-from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
+from solver.materials.flow_stress import flow_stress, hardening_slope, in_step, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
 
@@ -38,9 +38,8 @@ class JohnsonCook(NamedTuple):
 
 
 @inline
-def rate_factor(model: JohnsonCook, strain_rate: float) -> float:
-    """The factor by which the strain rate raises the flow stress."""
-    r = strain_rate / model.epdot_0
+def rate_factor(model: JohnsonCook, r: float) -> float:
+    """The factor by which the strain rate, r in units of ``epdot_0``, raises the flow stress."""
     if r < 1.0:
         return (1.0 + r) ** model.C
     return 1.0 + model.C * math.log(r)
@@ -57,27 +56,61 @@ def thermal_factor(model: JohnsonCook, temperature: float) -> float:
     return 1.0 - homologous**model.m
 
 
+class InStep(NamedTuple):
+    """The law at the rate and temperature of a step."""
+
+    model: JohnsonCook
+    rate: float
+    """Factor of the strain rate."""
+    slope: float
+    """Its derivative by r."""
+    thermal: float
+    """Factor of the temperature."""
+
+
+@implements(in_step, JohnsonCook)
+def _(model: JohnsonCook, state: PlasticityState) -> InStep:
+    r = state.strain_rate / model.epdot_0
+    rate = rate_factor(model, r)
+    slope = model.C * rate / (1.0 + r) if r < 1.0 else model.C / r
+    return InStep(model, rate, slope, thermal_factor(model, state.temperature))
+
+
+@inline
+def hardened(model: JohnsonCook, plastic_strain: float) -> float:
+    """The flow stress at the reference rate and temperature."""
+    return model.A + model.B * plastic_strain**model.n
+
+
+@implements(flow_stress, InStep)
+def _(law: InStep, state: PlasticityState) -> float:
+    return hardened(law.model, state.plastic_strain) * law.rate * law.thermal
+
+
+@implements(hardening_slope, InStep)
+def _(law: InStep, state: PlasticityState) -> float:
+    if state.plastic_strain <= 0.0:
+        return 0.0
+    hardening = law.model.B * state.plastic_strain**law.model.n
+    return law.model.n * hardening * (law.rate * law.thermal) / state.plastic_strain
+
+
+@implements(rate_slope, InStep)
+def _(law: InStep, state: PlasticityState) -> float:
+    """Slope by r, the rate in units of ``epdot_0``."""
+    return hardened(law.model, state.plastic_strain) * law.thermal * law.slope
+
+
 @implements(flow_stress, JohnsonCook)
 def _(model: JohnsonCook, state: PlasticityState) -> float:
-    hardened = model.A + model.B * state.plastic_strain**model.n
-    return hardened * rate_factor(model, state.strain_rate) * thermal_factor(model, state.temperature)
+    return flow_stress(in_step(model, state), state)
 
 
 @implements(hardening_slope, JohnsonCook)
 def _(model: JohnsonCook, state: PlasticityState) -> float:
-    if state.plastic_strain <= 0.0:
-        return 0.0
-    factors = rate_factor(model, state.strain_rate) * thermal_factor(model, state.temperature)
-    hardening = model.B * state.plastic_strain**model.n
-    return model.n * hardening * factors / state.plastic_strain
+    return hardening_slope(in_step(model, state), state)
 
 
 @implements(rate_slope, JohnsonCook)
 def _(model: JohnsonCook, state: PlasticityState) -> float:
-    """Slope by r, the rate in units of ``epdot_0``."""
-    hardened = model.A + model.B * state.plastic_strain**model.n
-    base = hardened * thermal_factor(model, state.temperature)
-    r = state.strain_rate / model.epdot_0
-    if r < 1.0:
-        return base * model.C * (1.0 + r) ** (model.C - 1.0)
-    return base * model.C / r
+    return rate_slope(in_step(model, state), state)
