@@ -39,13 +39,19 @@ class NodalFields(NamedTuple):
     heat: Array
     """(M, N) rate of heat by conduction and external sources divided by specific heat, mass times K/s."""
 
+    def of(self, m: int) -> NodalFields:
+        """The fields of one material, without the first axis."""
+        return NodalFields(*(field[m] for field in self))
+
 
 def new_nodal_fields(grid: Grid, materials: int) -> NodalFields:
-    """Zeros for every field."""
+    """Fields of empty nodes."""
     scalar = (materials, grid.number_of_nodes)
-    return NodalFields(
+    fields = NodalFields(
         *(np.zeros(scalar + (3,) * (name in _VECTORS)) for name in NodalFields._fields),
     )
+    fields.mass[:] = fields.volume[:] = EMPTY_MASS
+    return fields
 
 
 _VECTORS = {"velocity", "velocity_star", "acceleration", "internal_force", "external_force"}

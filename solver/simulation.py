@@ -10,7 +10,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -20,11 +20,12 @@ from solver.boundary_conditions import BoundaryConditions
 from solver.contact.law import ContactLaw, ContactScene
 from solver.flags import Flags
 from solver.grid import FACES, Grid, NodeBlock
+from solver.interpolation.shape import Sums
 from solver.kernels import nodes, settle, stress, transfer
 from solver.kernels.chunks import number_of_chunks
 from solver.kernels.transfer import CHANNELS, EXTERNAL_FORCE, GATHERED, MOTION_SUMS, Transfer
 from solver.lanes import new_rows
-from solver.materials.constitutive import Material, Step, initial_sound_speed, time_step_limit
+from solver.materials.constitutive import Material, Step, initial_sound_speed, numbers_only, time_step_limit
 from solver.materials.failure import Failure, new_failure
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.particles import Particles, keep
@@ -77,6 +78,11 @@ class Body:
     is_active: bool = True
     possible_alpha: bool = True
 
+    @cached_property
+    def numeric_model(self) -> Any:
+        """The model as kernels take it."""
+        return numbers_only(self.model)
+
     def keep(self, kept: Array) -> None:
         """Drop the particles that a mask (n,) leaves out."""
         self.records = tuple(keep(record, kept) for record in self.records)
@@ -107,6 +113,7 @@ class Simulation:
     after_step : calls made before particles are sorted out: inserted particles.
     time_step_limits : functions of the time that bound the step from there.
     spread_corner_loads : adds external forces by particle corners (CBDI), in place of particle weights.
+    whole_grid : nodes that no particle touches take part too, for those who look at nodal values afterwards.
     team : the threads that share the loops over particles; the results do not depend on how many they are.
     """
 
@@ -124,6 +131,7 @@ class Simulation:
     after_step: list[Callable[[Simulation, float], None]] = field(default_factory=list)
     time_step_limits: list[Callable[[float], float]] = field(default_factory=list)
     spread_corner_loads: Callable[[Body, Array], None] | None = None
+    whole_grid: bool = False
     team: Team = field(default_factory=Team)
     time: float = 0.0
     step_number: int = 0
@@ -133,14 +141,19 @@ class Simulation:
         """Make the arrays that live as long as the simulation, so that steps allocate nothing large."""
         count = self.grid.number_of_nodes
         self.nodal: NodalFields = new_nodal_fields(self.grid, len(self.bodies))
-        self._sums = new_rows(count, CHANNELS)
+        self._rows = new_rows(count, CHANNELS)
+        self._touched = np.zeros((len(self.bodies), -(-count // 8) * 8), dtype=np.uint8)
+        self._active_nodes = np.zeros((len(self.bodies), count), dtype=np.uintp)
+        self._active = [listed[:0] for listed in self._active_nodes]
+        self._fields = [self.nodal.of(m) for m in range(len(self.bodies))]
         self._gathered = new_rows(count, GATHERED)
         self._chunk_sums = np.zeros((0, MOTION_SUMS))
         self._blocks: dict[int, tuple[int, int, list[NodeBlock]]] = {}
         self._temperature_star = np.zeros((len(self.bodies), count))
         self._projected_temperature = np.zeros((len(self.bodies), count))
         self._images = _periodic_images(self.grid)
-        self._image_nodes = np.unique(self._images[1])
+        self._is_image = np.zeros(count, dtype=np.bool_)
+        self._is_image[self._images[1]] = True
         self._owned_nodes = _owned_nodes(self.grid)
         self._owned_cells = _owned_cells(self.grid)
         self._weight = self.boundary_conditions.node_to_cell_weight()
@@ -241,37 +254,39 @@ class Simulation:
 
     def _project(self, m: int, body: Body) -> None:
         """Mass, velocity, forces and temperature of a body at the nodes, with the conditions on symmetry faces."""
-        nodal = self.nodal
+        nodal, touched = self.nodal, self._touched[m]
+        nodes.forget(self._active[m], touched, self._fields[m])
+        if self.whole_grid:
+            touched[:] = 1
         if self._is_active(body):
             self._scatter(m, body)
             if self.flags.gradient_enhanced_projection:
-                transfer.add_gradients(self.interpolator, self.grid.index, body.particles, self._sums)
+                transfer.add_gradients(self.interpolator, self.grid.index, body.particles, self._rows)
             if self.spread_corner_loads is not None:
-                self.spread_corner_loads(body, self._sums[:, EXTERNAL_FORCE])
+                loads = self._rows[:, EXTERNAL_FORCE]
+                self.spread_corner_loads(body, loads)
+                touched[: len(loads)] |= loads.any(axis=1)
         if len(self._images[0]):
-            nodes.fold_images(self._sums, *self._images)
-        nodes.normalise(
-            self._sums,
-            nodal.mass[m],
-            nodal.volume[m],
-            nodal.velocity[m],
-            nodal.internal_force[m],
-            nodal.external_force[m],
-            nodal.temperature[m],
-            nodal.heat[m],
-        )
-        self._projected_temperature[m] = nodal.temperature[m]
+            nodes.fold_images(self._rows, touched, *self._images)
+        count = nodes.list_touched(touched, touched.view(np.uint64), self._active_nodes[m])
+        self._active[m] = self._active_nodes[m, :count]
+        nodes.normalise(self._rows, self._active[m], self._fields[m])
+        if self.flags.explicit_heat_conduction:
+            self._projected_temperature[m] = nodal.temperature[m]
         self.boundary_conditions.apply_temperature(nodal.temperature[m], m)
         self.boundary_conditions.apply_symmetry(nodal.velocity[m], m)
 
     def _scatter(self, m: int, body: Body) -> None:
         """Sum what the particles of a body carry at the nodes; each thread fills its own block of nodes."""
-        options, index = self._transfer(body), self.grid.index
+        options, index, sums = self._transfer(body), self.grid.index, self._sums_of(m)
 
         def fill(block: NodeBlock) -> None:
-            transfer.particles_to_grid(self.interpolator, index, block, body.particles, options, self._sums)
+            transfer.particles_to_grid(self.interpolator, index, block, body.particles, options, sums)
 
         self.team.run([partial(fill, block) for block in self._node_blocks(m, body)])
+
+    def _sums_of(self, m: int) -> Sums:
+        return Sums(self._rows, self._touched[m])
 
     def _node_blocks(self, m: int, body: Body) -> list[NodeBlock]:
         """The blocks of nodes that threads fill, cut anew as particles move."""
@@ -298,10 +313,11 @@ class Simulation:
             return
         nodal = self.nodal
         for m in range(len(self.bodies)):
+            touched = self._touched[m]
             for vectors in (nodal.velocity[m], nodal.velocity_star[m], nodal.acceleration[m]):
-                nodes.copy_to_images(vectors, *self._images)
+                nodes.copy_to_images(vectors, touched, *self._images)
             for scalars in (nodal.temperature_rate[m], self._temperature_star[m]):
-                nodes.copy_to_images(scalars.reshape(-1, 1), *self._images)
+                nodes.copy_to_images(scalars.reshape(-1, 1), touched, *self._images)
 
     def _symmetric_forces(self) -> None:
         for m, body in enumerate(self.bodies):
@@ -339,31 +355,23 @@ class Simulation:
             return np.zeros((self.grid.number_of_nodes, 3, 3))
         sums = project_stress(self, body)
         if len(self._images[0]):
-            nodes.fold_images(sums, *self._images)
+            nodes.fold_images(sums, self._touched[m], *self._images)
         return (sums / self.nodal.volume[m][:, None]).reshape(-1, 3, 3)
 
     # ---- on the grid ---------------------------------------------------------------------------------------
 
     def _accelerate(self, m: int, body: Body, dt: float) -> None:
-        nodal = self.nodal
-        nodes.accelerate(
-            nodal.mass[m],
-            nodal.internal_force[m],
-            nodal.external_force[m],
-            nodal.velocity[m],
-            nodal.acceleration[m],
-            nodal.velocity_star[m],
-            self.gravity,
-            self.flags.artificial_damping_coeff,
-            self.flags.minimum_mass_for_acc,
-            dt,
+        nodal, active, fields = self.nodal, self._active[m], self._fields[m]
+        motion = nodes.Motion(
+            self.gravity, self.flags.artificial_damping_coeff, self.flags.minimum_mass_for_acc
         )
+        nodes.accelerate(active, fields, motion, dt)
         if body.transmits_force:
             nodal.acceleration[m] = 0.0
             nodal.velocity_star[m] = nodal.velocity[m]
-        mass, force, twins = nodal.mass[m], nodal.external_force[m], self._image_nodes
-        self._add("TotalMass", body, float(mass.sum() - mass[twins].sum()))
-        self._add("SumTransmittedForce", body, force.sum(axis=0) - force[twins].sum(axis=0))
+        mass, *force = nodes.mass_and_load(active, fields, self._is_image)
+        self._add("TotalMass", body, mass)
+        self._add("SumTransmittedForce", body, np.array(force))
 
     def too_fast(self, dt: float) -> bool:
         """Whether a node inside the domain would cross half a cell in the last step's dt."""
@@ -377,7 +385,9 @@ class Simulation:
         for m in range(len(self.bodies)):
             self.boundary_conditions.apply_velocity(nodal.velocity_star[m], m)
             self.boundary_conditions.apply_symmetry(nodal.velocity_star[m], m)
-            nodes.rate_of_change(nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m])
+            nodes.rate_of_change(
+                self._active[m], nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m]
+            )
 
     def _conduct_heat(self, dt: float) -> None:
         """Temperature rates at the nodes: conduction, sources, contact and the conditions on faces."""
@@ -387,12 +397,11 @@ class Simulation:
             capacity = np.array([body.material.specific_heat for body in self.bodies])
             nodes.exchange_heat(nodal.mass, nodal.temperature, capacity, dt, nodal.temperature_rate)
         for m in range(len(self.bodies)):
-            nodes.temperature_rate_of_heat(nodal.heat[m], nodal.mass[m], nodal.temperature_rate[m])
             star = self._temperature_star[m]
-            np.multiply(nodal.temperature_rate[m], dt, out=star)
-            star += nodal.temperature[m]
+            nodes.warm_up(self._active[m], self._fields[m], dt, star)
             self.boundary_conditions.apply_temperature(star, m)
             nodes.rate_of_change(
+                self._active[m],
                 star.reshape(-1, 1),
                 self._projected_temperature[m].reshape(-1, 1),
                 dt,
@@ -402,15 +411,9 @@ class Simulation:
     # ---- grid to particles ---------------------------------------------------------------------------------
 
     def _move(self, m: int, body: Body, dt: float) -> None:
-        nodal, particles = self.nodal, body.particles
+        particles = body.particles
         filtered = self._filter(m, body) if self.flags.XPIC2 and not body.rigid else None
-        nodes.interleave(
-            nodal.velocity_star[m],
-            self._temperature_star[m],
-            nodal.acceleration[m],
-            nodal.temperature_rate[m],
-            self._gathered,
-        )
+        nodes.interleave(self._active[m], self._fields[m], self._temperature_star[m], self._gathered)
         options, index = self._transfer(body), self.grid.index
 
         def move(first: int, last: int, sums: Array) -> None:
@@ -422,7 +425,7 @@ class Simulation:
                 self._gathered,
                 filtered is not None,
                 particles.velocity if filtered is None else filtered,
-                self._sums,
+                self._rows,
                 dt,
                 first,
                 last,
@@ -431,7 +434,7 @@ class Simulation:
 
         motion = transfer.total(self._in_chunks(body, move))
         if filtered is not None:
-            self._sums[:] = 0.0
+            self._rows[self._active[m]] = 0.0
         self._add("KineticEnergy", body, motion.kinetic_energy)
         self._add("ThermalEnergy", body, motion.thermal_energy)
         self._add("TotalMomentum", body, np.array(motion.momentum))
@@ -441,12 +444,13 @@ class Simulation:
         """XPIC(2): velocities S v of the particles (n, 3); leaves S+ S v at the nodes in the first of the sums."""
         nodal, filtered = self.nodal, np.empty((len(body.particles), 3))
         self._gathered[:, :3] = nodal.velocity[m]
+        sums = self._sums_of(m)
         transfer.smooth_velocity(
-            self.interpolator, self.grid.index, body.particles, self._gathered, filtered, self._sums
+            self.interpolator, self.grid.index, body.particles, self._gathered, filtered, sums
         )
         if len(self._images[0]):
-            nodes.fold_images(self._sums, *self._images)
-        nodes.divide_by_mass(self._sums, nodal.mass[m])
+            nodes.fold_images(*sums, *self._images)
+        nodes.divide_by_mass(self._active[m], self._rows, nodal.mass[m])
         return filtered
 
     def _update_stress(self, body: Body, cells: Array, dt: float) -> float:
@@ -466,7 +470,7 @@ class Simulation:
 
         def update(first: int, last: int, sums: Array) -> None:
             stress.update_stresses(
-                body.model,
+                body.numeric_model,
                 body.state,
                 body.failure,
                 body.particles,

@@ -13,7 +13,7 @@ import numpy as np
 from solver.grid import Grid
 from ups.archive import ArchiveWriter, Box, ReductionFormat, Variable
 from ups.archive import Grid as ArchiveGrid
-from ups.archive.variables import GLOBAL_MATERIAL
+from ups.archive.variables import GLOBAL_MATERIAL, NODE
 from ups.deck import DataArchiver, Save, Specification
 from ups.diagnostics import Diagnostics, suggestion_for
 from ups.element import Element
@@ -234,6 +234,8 @@ class TimestepOutput(Observer):
 
     def begin(self, run: Run) -> None:
         """Set up recorders, and write the state at the start where the deck asks for it."""
+        if any(q.variable.container == NODE for q in self._plan.fields):
+            run.simulation.whole_grid = True  # as sus writes them, empty nodes included
         if any(q.variable.name == STRESS_AT_NODES for q in self._plan.fields):
             self._plan.stress.attach(run.simulation)
         if self._at_start and run.simulation.step_number == 0 and self.schedule.is_active:

@@ -108,6 +108,15 @@ class Content(NamedTuple):
     by_z: Lanes
 
 
+class Sums(NamedTuple):
+    """What particles are summed into."""
+
+    rows: Any
+    """(N, 16), one row a node."""
+    touched: Any
+    """(N,) set to 1 at every node that something is added to."""
+
+
 @generic_with_default
 def scatter(
     interpolator: Any,
@@ -117,18 +126,19 @@ def scatter(
     p: int,
     lane: int,
     content: Content,
-    sums: Any,
+    sums: Sums,
     room: Room,
 ) -> None:
-    """Add what particle ``p`` carries to the rows of ``sums`` (N, 16) of its nodes in ``block``."""
+    """Add what particle ``p`` carries to its nodes in ``block``."""
     count = shapes_of(interpolator, grid, particles, p, room)
     for n in range(count):
         node, S = room.nodes[n], room.weights[n]
         if in_block(grid, block, node):
-            put_lanes(sums, node, 0, lanes_at(sums, node, 0) + content.plain * S)
+            sums.touched[node] = 1
+            put_lanes(sums.rows, node, 0, lanes_at(sums.rows, node, 0) + content.plain * S)
             gx, gy, gz = room.gradients[n, 0], room.gradients[n, 1], room.gradients[n, 2]
             more = content.mixed * S + content.by_x * gx + content.by_y * gy + content.by_z * gz
-            put_lanes(sums, node, 8, lanes_at(sums, node, 8) + more)
+            put_lanes(sums.rows, node, 8, lanes_at(sums.rows, node, 8) + more)
 
 
 @inline

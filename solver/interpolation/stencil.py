@@ -13,6 +13,7 @@ from solver.interpolation.shape import (
     Content,
     Gathered,
     Room,
+    Sums,
     gather,
     is_near,
     nothing,
@@ -160,14 +161,14 @@ def scatter_product(
     p: int,
     lane: int,
     content: Content,
-    sums: Any,
+    sums: Sums,
     room: Room,
 ) -> None:
     """As ``scatter``, row of nodes by row: what the nodes of a row have in common is multiplied once.
 
     A row is never divided, so blocks have to be slabs across y or z.
     """
-    factors = room.factors
+    factors, rows = room.factors, sums.rows
     at = corner(factors, lane)
     low, high = block.low, block.high
     for c in range(max(0, low[2] - at.k), min(at.count_z, high[2] - at.k)):
@@ -180,8 +181,9 @@ def scatter_product(
             row = np.uint64(at.i + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
             for a in range(nodes_across(interpolator)):
                 node, wx, gx = row + np.uint64(a), factors[W + a, lane], factors[G + a, lane]
-                put_lanes(sums, node, 0, lanes_at(sums, node, 0) + plain * wx)
-                put_lanes(sums, node, 8, lanes_at(sums, node, 8) + mixed * wx + by_x * gx)
+                sums.touched[node] = 1
+                put_lanes(rows, node, 0, lanes_at(rows, node, 0) + plain * wx)
+                put_lanes(rows, node, 8, lanes_at(rows, node, 8) + mixed * wx + by_x * gx)
 
 
 @inline

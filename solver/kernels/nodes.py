@@ -1,16 +1,17 @@
 """The loops over nodes.
 
-Nodal fields are those of one material, (N, ...), unless said.
+``active`` lists the nodes that particles of a material touch in this step, ``fields`` holds the nodal fields of that
+material alone, (N, ...). All other nodes keep the values of empty ones.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from solver.boundary_conditions import GRADIENT, MIRROR, SET, ZERO_NORMAL, Operations
 from solver.jit import kernel
 from solver.kernels.transfer import CHANNELS
-from solver.nodal import EMPTY_MASS
+from solver.nodal import EMPTY_MASS, NodalFields
 
 
 @kernel
@@ -33,88 +34,131 @@ def apply_operations(operations: Operations, field: Any) -> None:
 
 
 @kernel
-def fold_images(sums: Any, owner: Any, image: Any) -> None:
-    """Periodic directions: add the sums of image nodes to their owners, then copy the totals back."""
+def fold_images(rows: Any, touched: Any, owner: Any, image: Any) -> None:
+    """Periodic directions: add the rows of image nodes to their owners, then copy the totals back."""
     for e in range(owner.shape[0]):
-        for c in range(sums.shape[1]):
-            sums[owner[e], c] += sums[image[e], c]
+        if touched[image[e]]:
+            touched[owner[e]] = 1
+            for c in range(rows.shape[1]):
+                rows[owner[e], c] += rows[image[e], c]
     for e in range(owner.shape[0]):
-        for c in range(sums.shape[1]):
-            sums[image[e], c] = sums[owner[e], c]
+        if touched[owner[e]]:
+            touched[image[e]] = 1
+            for c in range(rows.shape[1]):
+                rows[image[e], c] = rows[owner[e], c]
 
 
 @kernel
-def copy_to_images(field: Any, owner: Any, image: Any) -> None:
+def copy_to_images(field: Any, touched: Any, owner: Any, image: Any) -> None:
     """Periodic directions: give image nodes the values (N, components) of their owners."""
     for e in range(owner.shape[0]):
-        for c in range(field.shape[1]):
-            field[image[e], c] = field[owner[e], c]
+        if touched[image[e]]:
+            for c in range(field.shape[1]):
+                field[image[e], c] = field[owner[e], c]
 
 
 @kernel
-def normalise(
-    sums: Any,
-    mass: Any,
-    volume: Any,
-    velocity: Any,
-    internal_force: Any,
-    external_force: Any,
-    temperature: Any,
-    heat: Any,
-) -> None:
-    """Split the sums into nodal fields, v_i = momentum / mass and T_i = (mass T) / mass, and leave zeros behind."""
-    for i in range(mass.shape[0]):
-        row = sums[i]
-        m = EMPTY_MASS + row[0]
-        mass[i] = m
-        volume[i] = EMPTY_MASS + row[4]
+def list_touched(touched: Any, words: Any, active: Any) -> int:
+    """Write the nodes that are touched to ``active`` (N,), in order, and return how many there are.
+
+    ``words`` is ``touched`` seen as numbers of eight bytes, most of which are 0.
+    """
+    count = 0
+    for w in range(words.shape[0]):
+        if words[w] != 0:
+            for i in range(8 * w, min(8 * w + 8, active.shape[0])):
+                if touched[i]:
+                    active[count] = i
+                    count += 1
+    return count
+
+
+@kernel
+def forget(active: Any, touched: Any, fields: NodalFields) -> None:
+    """Give the nodes that were active the values of empty ones, and count them as not touched."""
+    for n in range(active.shape[0]):
+        i = active[n]
+        touched[i] = 0
+        fields.mass[i] = fields.volume[i] = EMPTY_MASS
+        fields.temperature[i] = fields.temperature_rate[i] = fields.heat[i] = 0.0
         for c in range(3):
-            velocity[i, c] = row[1 + c] / m
-            internal_force[i, c] = row[8 + c]
-            external_force[i, c] = row[12 + c]
-        temperature[i] = row[5] / m
-        heat[i] = row[6] + row[11]
+            fields.velocity[i, c] = fields.velocity_star[i, c] = fields.acceleration[i, c] = 0.0
+            fields.internal_force[i, c] = fields.external_force[i, c] = 0.0
+
+
+@kernel
+def normalise(rows: Any, active: Any, fields: NodalFields) -> None:
+    """Split sums into nodal fields, v_i = momentum / mass and T_i = (mass T) / mass, and leave zeros behind."""
+    for n in range(active.shape[0]):
+        i = active[n]
+        row = rows[i]
+        m = EMPTY_MASS + row[0]
+        fields.mass[i] = m
+        fields.volume[i] = EMPTY_MASS + row[4]
+        for c in range(3):
+            fields.velocity[i, c] = row[1 + c] / m
+            fields.internal_force[i, c] = row[8 + c]
+            fields.external_force[i, c] = row[12 + c]
+        fields.temperature[i] = row[5] / m
+        fields.heat[i] = row[6] + row[11]
         for c in range(CHANNELS):
             row[c] = 0.0
 
 
+class Motion(NamedTuple):
+    """What acts on nodes apart from the forces of particles."""
+
+    gravity: tuple[float, float, float]
+    damping: float
+    least_mass: float
+    """Nodes no heavier than that feel gravity only."""
+
+
 @kernel
-def accelerate(
-    mass: Any,
-    internal_force: Any,
-    external_force: Any,
-    velocity: Any,
-    acceleration: Any,
-    velocity_star: Any,
-    gravity: Any,
-    damping: float,
-    least_mass: float,
-    dt: float,
-) -> None:
-    """a_i = (f_int + f_ext) / m - damping v + g and v* = v + a dt; light nodes feel gravity only."""
-    for i in range(mass.shape[0]):
-        m = mass[i]
+def accelerate(active: Any, fields: NodalFields, motion: Motion, dt: float) -> None:
+    """a_i = (f_int + f_ext) / m - damping v + g and v* = v + a dt."""
+    for n in range(active.shape[0]):
+        i = active[n]
+        m = fields.mass[i]
         for c in range(3):
-            a = 0.0
-            if m > least_mass:
-                a = (internal_force[i, c] + external_force[i, c]) / m - damping * velocity[i, c]
-            acceleration[i, c] = a + gravity[c]
-            velocity_star[i, c] = velocity[i, c] + acceleration[i, c] * dt
+            a, v = 0.0, fields.velocity[i, c]
+            if m > motion.least_mass:
+                force = fields.internal_force[i, c] + fields.external_force[i, c]
+                a = force / m - motion.damping * v
+            fields.acceleration[i, c] = a + motion.gravity[c]
+            fields.velocity_star[i, c] = v + fields.acceleration[i, c] * dt
 
 
 @kernel
-def rate_of_change(new: Any, old: Any, dt: float, rate: Any) -> None:
-    """(new - old) / dt, entry by entry of (N, components) arrays."""
-    for i in range(new.shape[0]):
+def mass_and_load(active: Any, fields: NodalFields, is_image: Any) -> tuple[float, float, float, float]:
+    """Sums of mass and of the three components of external force over nodes that are no periodic images."""
+    mass = x = y = z = 0.0
+    for n in range(active.shape[0]):
+        i = active[n]
+        if not is_image[i]:
+            mass += fields.mass[i]
+            x += fields.external_force[i, 0]
+            y += fields.external_force[i, 1]
+            z += fields.external_force[i, 2]
+    return mass, x, y, z
+
+
+@kernel
+def rate_of_change(active: Any, new: Any, old: Any, dt: float, rate: Any) -> None:
+    """(new - old) / dt of values (N, components) of the active nodes."""
+    for n in range(active.shape[0]):
+        i = active[n]
         for c in range(new.shape[1]):
             rate[i, c] = (new[i, c] - old[i, c]) / dt
 
 
 @kernel
-def temperature_rate_of_heat(heat: Any, mass: Any, rate: Any) -> None:
-    """Add heat / mass to the nodal temperature rate."""
-    for i in range(mass.shape[0]):
-        rate[i] += heat[i] / mass[i]
+def warm_up(active: Any, fields: NodalFields, dt: float, star: Any) -> None:
+    """Add heat / mass to the rate of temperature and take it for a step: T* = T + rate dt."""
+    for n in range(active.shape[0]):
+        i = active[n]
+        fields.temperature_rate[i] += fields.heat[i] / fields.mass[i]
+        star[i] = fields.temperature[i] + fields.temperature_rate[i] * dt
 
 
 @kernel
@@ -141,21 +185,21 @@ def fastest_node(velocity: Any, inner: Any) -> float:
 
 
 @kernel
-def divide_by_mass(vectors: Any, mass: Any) -> None:
-    """Divide the vectors that rows (N, ..) of nodes begin with by nodal mass (N,) in place."""
-    for i in range(mass.shape[0]):
+def divide_by_mass(active: Any, rows: Any, mass: Any) -> None:
+    """Divide the vectors that the rows (N, ..) of active nodes begin with by nodal mass (N,) in place."""
+    for n in range(active.shape[0]):
+        i = active[n]
         for c in range(3):
-            vectors[i, c] /= mass[i]
+            rows[i, c] /= mass[i]
 
 
 @kernel
-def interleave(
-    velocity_star: Any, temperature_star: Any, acceleration: Any, temperature_rate: Any, gathered: Any
-) -> None:
+def interleave(active: Any, fields: NodalFields, temperature_star: Any, gathered: Any) -> None:
     """Put what particles gather from a node side by side: rows (N, GATHERED)."""
-    for i in range(gathered.shape[0]):
+    for n in range(active.shape[0]):
+        i = active[n]
         for c in range(3):
-            gathered[i, c] = velocity_star[i, c]
-            gathered[i, 4 + c] = acceleration[i, c]
+            gathered[i, c] = fields.velocity_star[i, c]
+            gathered[i, 4 + c] = fields.acceleration[i, c]
         gathered[i, 3] = temperature_star[i]
-        gathered[i, 7] = temperature_rate[i]
+        gathered[i, 7] = fields.temperature_rate[i]

@@ -12,6 +12,7 @@ from solver.interpolation.shape import (
     MOST_NODES,
     Content,
     Gathered,
+    Sums,
     gather,
     is_near,
     new_room,
@@ -58,9 +59,9 @@ def particles_to_grid(
     block: NodeBlock,
     particles: Particles,
     transfer: Transfer,
-    sums: Any,
+    sums: Sums,
 ) -> None:
-    """Add mass, momentum, volume, forces and heat of a material's particles to ``sums`` (N, CHANNELS).
+    """Add mass, momentum, volume, forces and heat of a material's particles to ``sums``, rows of CHANNELS.
 
     Internal force: f_i = -sum_p V_p G_ip . (sigma_p - q_p I). Heat: sum_p (q_ext S_ip - k V_p G_ip . grad T) / c_v.
     Only nodes in ``block`` are touched, and particles in their order: the sums are the same however the nodes are
@@ -151,16 +152,15 @@ def smooth_velocity(
     particles: Particles,
     rows: Any,
     filtered: Any,
-    smoothed: Any,
+    smoothed: Sums,
 ) -> None:
     """XPIC(2), Hammerquist and Nairn (2017): S v at the particles, then their momentum S+ S v back at the nodes.
 
     ``rows`` (N, GATHERED) begin with the nodal velocity v, ``filtered`` (n, 3) gets sum_i S_ip v_i, ``smoothed``
-    (N, CHANNELS) sum_p S_ip m_p filtered_p at the beginning of its rows.
+    sum_p S_ip m_p filtered_p at the beginning of its rows.
     """
     room = new_room()
     everywhere = NodeBlock((0, 0, 0), grid.nodes, True)
-    smoothed[:] = 0.0
     for start in range(0, particles.mass.shape[0], WIDTH):
         prepare(interpolator, grid, particles, start, room)
         for lane in range(min(WIDTH, particles.mass.shape[0] - start)):

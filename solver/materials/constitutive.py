@@ -103,6 +103,18 @@ def initialize(model: Any, state: Any, particles: Particles, material: Material,
     """
 
 
+def numbers_only(model: Any) -> Any:
+    """A model's record for kernels: words, which choose what is made before the first step, become 0.
+
+    Numba takes records of numbers as they are; each word would have to be looked at anew in every call.
+    """
+    if isinstance(model, str):
+        return 0
+    if isinstance(model, tuple) and hasattr(model, "_fields"):
+        return type(model)(*map(numbers_only, model))
+    return model
+
+
 class NoState(NamedTuple):
     """The state of a model that keeps nothing but stress and deformation gradient."""
 

@@ -19,7 +19,7 @@ from solver.kernels.stress import STRESS_SUMS, Kinematics
 from solver.materials.constitutive import DELETE, NoState, Step
 from solver.materials.failure import new_failure
 from solver.materials.rigid import Rigid
-from solver.nodal import EMPTY_MASS
+from solver.nodal import EMPTY_MASS, new_nodal_fields
 from solver.particles import keep
 from solver.tensor import put_tensor, tensor_at
 
@@ -226,17 +226,58 @@ def test_empty_nodes_have_zero_velocity_and_temperature():
 
 
 def test_acceleration():
-    """a = f / m - damping v + g; nodes no heavier than the least mass feel gravity alone."""
-    mass = np.array([2.0, 0.5, EMPTY_MASS])
+    """a = f / m - damping v + g; nodes no heavier than the least mass feel gravity alone, others nothing."""
+    fields = new_nodal_fields(make_grid((1, 1, 0)), 1).of(0)
+    fields.mass[:3] = [2.0, 0.5, 1e-3]
     random = np.random.default_rng(3)
-    internal, external, velocity = random.normal(size=(3, 3, 3))
-    acceleration, velocity_star = np.empty((2, 3, 3))
+    for name in ("internal_force", "external_force", "velocity"):
+        getattr(fields, name)[:] = random.normal(size=fields.velocity.shape)
     gravity = (0.0, -9.81, 1.0)
-    nodes.accelerate(mass, internal, external, velocity, acceleration, velocity_star, gravity, 0.3, 0.5, DT)
+    nodes.accelerate(np.arange(3, dtype=np.uintp), fields, nodes.Motion(gravity, 0.3, 0.5), DT)
     expected = np.tile(gravity, (3, 1))
-    expected[0] += (internal[0] + external[0]) / 2.0 - 0.3 * velocity[0]
-    np.testing.assert_allclose(acceleration, expected, rtol=1e-14)
-    np.testing.assert_allclose(velocity_star, velocity + DT * expected, rtol=1e-14)
+    force = fields.internal_force[0] + fields.external_force[0]
+    expected[0] += force / 2.0 - 0.3 * fields.velocity[0]
+    np.testing.assert_allclose(fields.acceleration[:3], expected, rtol=1e-14)
+    np.testing.assert_allclose(fields.velocity_star[:3], fields.velocity[:3] + DT * expected, rtol=1e-14)
+    assert not fields.velocity_star[3:].any()
+
+
+def test_nodes_that_are_touched_are_listed_in_order():
+    touched = np.zeros(32, dtype=np.uint8)
+    wanted = [0, 7, 8, 15, 26]
+    touched[[*wanted, 27, 31]] = 1
+    active = np.zeros(27, dtype=np.uintp)
+    count = nodes.list_touched(touched, touched.view(np.uint64), active)
+    np.testing.assert_array_equal(active[:count], wanted)
+
+
+def test_nodes_left_behind_become_empty():
+    fields = new_nodal_fields(make_grid((1, 1, 0)), 1).of(0)
+    empty = [field.copy() for field in fields]
+    for field in fields:
+        field[:] = 7.0
+    touched = np.ones(fields.mass.size, dtype=np.uint8)
+    nodes.forget(np.arange(fields.mass.size, dtype=np.uintp), touched, fields)
+    for field, expected in zip(fields, empty, strict=True):
+        np.testing.assert_array_equal(field, expected)
+    assert not touched.any()
+
+
+def test_only_nodes_that_particles_touch_take_part():
+    """A particle that moves on leaves its old nodes as they were before; nodal results are those of all nodes."""
+    results = []
+    for whole in (False, True):
+        body = make_body(random_particles(SPACE, count=3))
+        body.particles.velocity[:] *= 20.0
+        simulation = make_simulation(SPACE, [body], whole_grid=whole, gravity=(0.0, -9.81, 0.0))
+        for _ in range(6):
+            simulation.advance(DT)
+        results.append((body.particles, simulation.nodal))
+    for some, every in zip(results[0][0], results[1][0], strict=True):
+        np.testing.assert_array_equal(some, every)
+    for name in ("mass", "volume", "velocity", "internal_force", "external_force", "temperature", "heat"):
+        np.testing.assert_array_equal(getattr(results[0][1], name), getattr(results[1][1], name))
+    assert (results[0][1].velocity_star[0, results[0][1].mass[0] < 1e-100] == 0.0).all()
 
 
 def test_materials_in_thermal_contact_reach_one_temperature_and_keep_their_heat():
@@ -257,11 +298,13 @@ def test_fastest_node():
 
 
 def test_images_add_to_their_owners_and_follow_them():
-    sums = np.arange(8.0).reshape(4, 2)
-    nodes.fold_images(sums, np.array([0, 1]), np.array([2, 3]))
-    np.testing.assert_array_equal(sums, [[4, 6], [8, 10], [4, 6], [8, 10]])
-    nodes.copy_to_images(sums, np.array([1, 0]), np.array([2, 3]))
-    np.testing.assert_array_equal(sums, [[4, 6], [8, 10], [8, 10], [4, 6]])
+    sums, touched = np.arange(12.0).reshape(6, 2), np.array([0, 1, 1, 0, 0, 0], dtype=np.uint8)
+    sums[[3, 4, 5]] = 0.0
+    nodes.fold_images(sums, touched, np.array([0, 1, 4]), np.array([2, 3, 5]))
+    np.testing.assert_array_equal(sums, [[4, 6], [2, 3], [4, 6], [2, 3], [0, 0], [0, 0]])
+    np.testing.assert_array_equal(touched, [1, 1, 1, 1, 0, 0])
+    nodes.copy_to_images(sums, touched, np.array([1, 0, 0]), np.array([2, 3, 4]))
+    np.testing.assert_array_equal(sums, [[4, 6], [2, 3], [2, 3], [4, 6], [0, 0], [0, 0]])
 
 
 # ---- grid to particles ------------------------------------------------------------------------------------
