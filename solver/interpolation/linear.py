@@ -5,19 +5,32 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from solver.declare import model
-from solver.dispatch import implements
-from solver.grid import GridIndex
-from solver.interpolation.shape import particle_domain, shape_functions
-from solver.interpolation.stencil import Stencil, direction, nodes_across, separable, undeformed
-from solver.lanes import Lanes, every
+from solver.dispatch import implements, inline
+from solver.grid import GridIndex, NodeBlock
+from solver.interpolation.shape import (
+    Content,
+    Gathered,
+    Room,
+    Sums,
+    gather,
+    nothing,
+    particle_domain,
+    scatter,
+    shape_functions,
+)
+from solver.interpolation.stencil import Corner, G, Stencil, W, corner, direction, separable, undeformed
+from solver.lanes import Lanes, every, lanes_at, put_lanes
+from solver.particles import Particles
 from solver.tensor import Tensor
 
 
 @model("interpolator", "linear")
 @separable
 class Linear(NamedTuple):
-    """Particles are points: S is the product of the hat functions 1 - |x - x_i| / dx of the three direction."""
+    """Particles are points: S is the product of the hat functions 1 - |x - x_i| / dx of the three directions."""
 
     @staticmethod
     def for_deck(axisymmetric: bool, critical_length: float) -> Linear | LinearAxisymmetric:
@@ -32,15 +45,78 @@ class LinearAxisymmetric(NamedTuple):
 implements(particle_domain, LinearAxisymmetric)(undeformed)
 
 
-@implements(nodes_across, Linear)
-def _(interpolator: Linear) -> int:
-    return 2
-
-
 @implements(direction, Linear)
 def _(interpolator: Linear, f: Lanes, width: Lanes) -> Stencil:
     none, one = every(0.0), every(1.0)
     return Stencil(none, 1.0 - f, f, none, -1.0 * one, one, none)
+
+
+class NodeWeights(NamedTuple):
+    """Weight and gradient of one of the eight nodes."""
+
+    node: Any
+    """Where it is stored."""
+    S: float
+    gx: float
+    gy: float
+    gz: float
+
+
+@inline
+def at_node(grid: GridIndex, at: Corner, a: int, b: int, c: int, factors: Any, lane: int) -> NodeWeights:
+    """The node a, b, c = 0 or 1 after the first in x, y, z.
+
+    Products are taken in Uintah's order, and nodes visited with z fastest, as there: so even the rounding noise of
+    bodies that are not strained yet agrees.
+    """
+    wx, wy, wz = factors[W + a, lane], factors[8 + W + b, lane], factors[16 + W + c, lane]
+    gx, gy, gz = factors[G + a, lane], factors[8 + G + b, lane], factors[16 + G + c, lane]
+    node = np.uint64(at.i + a + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
+    return NodeWeights(node, wx * wy * wz, wy * wz * gx, wx * wz * gy, wx * wy * gz)
+
+
+@implements(scatter, Linear)
+def _(
+    interpolator: Linear,
+    grid: GridIndex,
+    block: NodeBlock,
+    particles: Particles,
+    p: int,
+    lane: int,
+    content: Content,
+    sums: Sums,
+    room: Room,
+) -> None:
+    at, low, high, rows = corner(room.factors, lane), block.low, block.high, sums.rows
+    for a in range(2):
+        for b in range(2):
+            for c in range(2):
+                if low[1] <= at.j + b < high[1] and low[2] <= at.k + c < high[2]:
+                    n = at_node(grid, at, a, b, c, room.factors, lane)
+                    sums.touched[n.node] = 1
+                    put_lanes(rows, n.node, 0, lanes_at(rows, n.node, 0) + content.plain * n.S)
+                    more = (
+                        content.by_x * n.gx + content.by_y * n.gy + content.by_z * n.gz + content.mixed * n.S
+                    )
+                    put_lanes(rows, n.node, 8, lanes_at(rows, n.node, 8) + more)
+
+
+@implements(gather, Linear)
+def _(
+    interpolator: Linear, grid: GridIndex, particles: Particles, p: int, lane: int, rows: Any, room: Room
+) -> Gathered:
+    at = corner(room.factors, lane)
+    value, by_x, by_y, by_z = nothing(), nothing(), nothing(), nothing()
+    for a in range(2):
+        for b in range(2):
+            for c in range(2):
+                n = at_node(grid, at, a, b, c, room.factors, lane)
+                row = lanes_at(rows, n.node, 0)
+                value = value + row * n.S
+                by_x = by_x + row * n.gx
+                by_y = by_y + row * n.gy
+                by_z = by_z + row * n.gz
+    return Gathered(value, by_x, by_y, by_z)
 
 
 @implements(shape_functions, LinearAxisymmetric)

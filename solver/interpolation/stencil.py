@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from solver.dispatch import generic, generic_with_default, implements, inline
+from solver.dispatch import generic, implements, inline
 from solver.grid import GridIndex, NodeBlock
 from solver.interpolation.shape import (
     Content,
@@ -61,12 +61,6 @@ def stencil(outer: Lanes, w0: Lanes, w1: Lanes, w2: Lanes, g0: Lanes, g1: Lanes,
 def direction(interpolator: Any, f: Lanes, width: Lanes) -> Stencil:
     """The weights of particles that wide, 0 <= f < 1 from the lower node of their cell; both in cells."""
     raise NotImplementedError
-
-
-@generic_with_default
-def nodes_across(interpolator: Any) -> int:
-    """The nodes in a direction, those of no weight included: 3, or 2 where the third weight is always zero."""
-    return 3
 
 
 W, G, FIRST, COUNT = 0, 3, 6, 7
@@ -179,7 +173,7 @@ def scatter_product(
             mixed = content.mixed * (wy * wz) + content.by_y * (gy * wz) + content.by_z * (wy * gz)
             by_x = content.by_x * (wy * wz)
             row = np.uint64(at.i + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
-            for a in range(nodes_across(interpolator)):
+            for a in range(3):
                 node, wx, gx = row + np.uint64(a), factors[W + a, lane], factors[G + a, lane]
                 sums.touched[node] = 1
                 put_lanes(rows, node, 0, lanes_at(rows, node, 0) + plain * wx)
@@ -200,7 +194,7 @@ def gather_product(
             wy, gy = factors[8 + W + b, lane], factors[8 + G + b, lane]
             along, slope = nothing(), nothing()
             row = np.uint64(at.i + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
-            for a in range(nodes_across(interpolator)):
+            for a in range(3):
                 nodal = lanes_at(rows, row + np.uint64(a), 0)
                 along = along + nodal * factors[W + a, lane]
                 slope = slope + nodal * factors[G + a, lane]

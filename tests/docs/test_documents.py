@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-KERNELS = "solver.kernels"
+KERNELS = [f"solver.kernels.{name}" for name in ("nodes", "settle", "stress", "transfer")]
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 
 
@@ -48,9 +48,9 @@ def test_files_exist(page: Path) -> None:
 def test_the_kernels_of_the_step_exist() -> None:
     page = (ROOT / "docs" / "architecture.md").read_text()
     table = page[page.index("## The step") : page.index("## Contracts")]
-    kernels = importlib.import_module(KERNELS)
+    kernels = [importlib.import_module(module) for module in KERNELS]
     rows = [line for line in table.splitlines() if re.match(r"\| \d", line)]
     named = {name for row in rows for name in re.findall(r"`(\w+)`", row)}
     elsewhere = {"stress_update", "apply_symmetry"}
     assert len(rows) == 11
-    assert [name for name in named - elsewhere if not hasattr(kernels, name)] == []
+    assert [name for name in named - elsewhere if not any(hasattr(k, name) for k in kernels)] == []
