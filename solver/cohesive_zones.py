@@ -66,14 +66,8 @@ class CohesiveZone(NamedTuple):
     delta_t_fail: Annotated[
         float | None, Parameter("sliding at failure; by default 4 delta_t", unit="m", gt=0.0)
     ] = None
-    do_rotation: Annotated[bool, Parameter("whether zones turn with their opening")] = False
-    name: Annotated[str, Parameter("a name", attribute=True, ignored="zones are numbered")] = ""
-
-    def faults(self) -> list[tuple[str, str]]:
-        """Fields that do not go together, each with what is wrong."""
-        if self.do_rotation:
-            return [("do_rotation", "Uintah's angle of rotation is a length: no unit gives it a meaning")]
-        return []
+    do_rotation: Annotated[bool, Parameter("zones turn with their two materials")] = False
+    name: Annotated[str, Parameter("a name for the reader", attribute=True)] = ""
 
 
 class ZoneState(NamedTuple):
@@ -164,7 +158,12 @@ def dot(a: Array, b: Array) -> Array:
 class CohesiveZones:
     """The zones of one file in a simulation.
 
-    :meth:`act` is for the hook ``after_contact`` of a simulation, :meth:`settle` for ``after_step``.
+    :meth:`act` is for the hook ``after_contact`` of a simulation, :meth:`settle` for ``after_step``. Where one
+    of the two materials is not near, a zone neither moves with it nor pulls at the other.
+
+    With ``do_rotation`` a zone turns like a rigid body with its two materials, separation included, so that
+    bodies that are tied may turn as a whole. Uintah takes an angle from the square of the
+    separation, which is a length and depends on the deck's units.
 
     Attributes
     ----------
@@ -186,25 +185,41 @@ class CohesiveZones:
         """
         nodes, weights = self._nodes_about()
         self._moved = self._follow(nodal, nodes, weights, dt)
-        for material, sign in ((self.zones.bottom, 1.0), (self.zones.top, -1.0)):
-            share = weights * nodal.mass[material[:, None], nodes]
+        bottom, top = (
+            weights * nodal.mass[material[:, None], nodes] for material in (self.zones.bottom, self.zones.top)
+        )
+        near = np.minimum(bottom.sum(axis=1), top.sum(axis=1)) > LEAST_MASS
+        for material, share, sign in ((self.zones.bottom, bottom, 1.0), (self.zones.top, top, -1.0)):
             share /= share.sum(axis=1, keepdims=True)
-            pull = sign * self._moved.force[:, None, :] * share[:, :, None]
+            pull = sign * (self._moved.force * near[:, None])[:, None, :] * share[:, :, None]
             np.add.at(nodal.external_force, (material[:, None], nodes), pull)
 
     def settle(self) -> None:
         """Take over the places of the last :meth:`act`; zones that left the domain are gone."""
         if self._moved is not None:
+            self._wrap(self._moved.position)
             self.zones = keep(self._moved, _in_domain(self.grid, self._moved.position))
             self._moved = None
 
+    def _wrap(self, positions: Array) -> None:
+        """Bring positions (n, 3) back into the domain in the directions in which it repeats."""
+        for axis in np.flatnonzero(self.grid.periodic):
+            low, high = self.grid.anchor[axis], self.grid.upper[axis]
+            positions[:, axis] = low + (positions[:, axis] - low) % (high - low)
+
     def _nodes_about(self) -> tuple[Array, Array]:
-        """The eight nodes of each zone's cell, (n, 8), and their trilinear weights."""
+        """The eight nodes of each zone's cell, (n, 8), and their trilinear weights.
+
+        Where the domain repeats, the nodes are those that own the values.
+        """
         relative = (self.zones.position - np.array(self.grid.anchor)) / np.array(self.grid.spacing)
         cell = np.floor(relative).astype(np.int64)
-        part = relative - cell
-        weights = np.where(OFFSETS, part[:, None, :], 1.0 - part[:, None, :]).prod(axis=2)
-        i, j, k = np.moveaxis(cell[:, None, :] + OFFSETS, 2, 0)
+        part = (relative - cell)[:, None, :]
+        weights = np.where(OFFSETS, part, 1.0 - part).prod(axis=2)
+        index = cell[:, None, :] + OFFSETS
+        repeats = np.array(self.grid.periodic, dtype=bool)
+        index = np.where(repeats, index % np.array(self.grid.cells), index)
+        i, j, k = np.moveaxis(index, 2, 0)
         return self.grid.flat(i, j, k), weights
 
     def _follow(self, nodal: NodalFields, nodes: Array, weights: Array, dt: float) -> ZoneState:
@@ -214,23 +229,49 @@ class CohesiveZones:
         top_displacement = old.top_displacement + top * dt
         bottom_displacement = old.bottom_displacement + bottom * dt
         separation = top_displacement - bottom_displacement
-        second_tangent = np.cross(old.tangent, old.normal)
-        deltas = dot(separation, old.normal), dot(separation, old.tangent), dot(separation, second_tangent)
+        normal, tangent = old.normal, old.tangent
+        if self.law.do_rotation:
+            angle = self._spin(nodal, nodes) * dt
+            normal, tangent = _turned(normal, angle), _turned(tangent, angle)
+            separation = _turned(old.separation, angle) + (top - bottom) * dt
+        second_tangent = np.cross(tangent, normal)
+        deltas = dot(separation, normal), dot(separation, tangent), dot(separation, second_tangent)
         opens = np.linalg.norm(separation, axis=1) >= np.linalg.norm(old.separation, axis=1)
         sound = old.failed == 0
         released = np.minimum(old.failed + opens, STEPS_TO_RELEASE)
         failed = np.where(sound, has_failed(self.law, *deltas), released).astype(np.int32)
-        normal, first, second = tractions(self.law, *deltas)
-        force = normal[:, None] * old.normal + first[:, None] * old.tangent + second[:, None] * second_tangent
+        along = zip(tractions(self.law, *deltas), (normal, tangent, second_tangent), strict=True)
+        traction = sum(size[:, None] * direction for size, direction in along)
         held = np.where(sound, 1.0, 1.0 - released / STEPS_TO_RELEASE)
         return old._replace(
             position=old.position + 0.5 * (top + bottom) * dt,
+            normal=normal,
+            tangent=tangent,
             top_displacement=top_displacement,
             bottom_displacement=bottom_displacement,
             separation=separation,
-            force=force * (old.area * held)[:, None],
+            force=traction * (old.area * held)[:, None],
             failed=failed,
         )
+
+    def _spin(self, nodal: NodalFields, nodes: Array) -> Array:
+        """Angular velocities (n, 3) with which the two materials turn about their centres at the zones.
+
+        omega = I^-1 L with the moments of inertia I and of momentum L of the masses at the nodes, both summed
+        over the two materials: the rigid motion that comes closest to theirs. Only distances along the zone
+        count, since velocities across a body's edge are not known well at nodes.
+        """
+        places = OFFSETS * np.array(self.grid.spacing)
+        momentum, inertia = np.zeros((len(nodes), 3)), np.zeros((len(nodes), 3, 3))
+        for material in (self.zones.top, self.zones.bottom):
+            mass = nodal.mass[material[:, None], nodes][:, :, None]
+            velocity = nodal.velocity[material[:, None], nodes]
+            arm = places - (mass * places).sum(axis=1, keepdims=True) / mass.sum(axis=1, keepdims=True)
+            arm -= np.einsum("nka,na,nb->nkb", arm, self.zones.normal, self.zones.normal)
+            momentum += (mass * np.cross(arm, velocity)).sum(axis=1)
+            spread = np.einsum("nka,nkb->nab", mass * arm, arm)
+            inertia += np.trace(spread, axis1=1, axis2=2)[:, None, None] * np.eye(3) - spread
+        return np.einsum("nab,nb->na", np.linalg.pinv(inertia, hermitian=True), momentum)
 
 
 def _velocity(nodal: NodalFields, material: Array, nodes: Array, weights: Array) -> Array:
@@ -238,3 +279,11 @@ def _velocity(nodal: NodalFields, material: Array, nodes: Array, weights: Array)
     there = weights * (nodal.mass[material[:, None], nodes] > LEAST_MASS)
     velocity = nodal.velocity[material[:, None], nodes]
     return np.asarray((velocity * there[:, :, None]).sum(axis=1) / (there.sum(axis=1) + NO_WEIGHT)[:, None])
+
+
+def _turned(vectors: Array, angle: Array) -> Array:
+    """Vectors (n, 3) turned about an axis by the length of ``angle`` (n, 3): Rodrigues' formula."""
+    size = np.linalg.norm(angle, axis=1, keepdims=True)
+    axis = angle / (size + NO_WEIGHT)
+    across, along = np.cross(axis, vectors), dot(axis, vectors)[:, None]
+    return np.asarray(np.cos(size) * vectors + np.sin(size) * across + (1.0 - np.cos(size)) * along * axis)

@@ -132,6 +132,17 @@ class Flags:
     delete_geometry_objects: Annotated[
         bool, Parameter("free the shapes after the start", tag="DeleteGeometryObjects", ignored="memory only")
     ] = False
+    create_new_particles: Annotated[
+        bool,
+        Parameter(
+            "convert failed particles into those of a copy of their material, with a velocity field of its own; "
+            "the copy of material m follows it, so that the deck's materials have the indices 0, 2, 4, ..."
+        ),
+    ] = False
+    manual_new_material: Annotated[
+        bool,
+        Parameter("convert failed particles into those of the material whose geom_object holds <null/>"),
+    ] = False
     can_add_material: Annotated[
         bool, Parameter("allow new materials", tag="CanAddMPMMaterial", ignored="no longer read by Uintah")
     ] = False
@@ -195,3 +206,9 @@ class Flags:
     granular_critical_z: Annotated[
         float, Parameter("critical stretch", tag="GranularMPMVcriz", ignored="granular only")
     ] = 1.0
+
+    def faults(self) -> list[tuple[str, str]]:
+        """Options that exclude each other, each with why."""
+        if self.create_new_particles and self.manual_new_material:
+            return [("manual_new_material", "with create_new_particles every material has its copy already")]
+        return []

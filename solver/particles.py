@@ -91,11 +91,8 @@ def new_arrays(record: type[Record], count: int) -> Record:
 
 
 def keep(record: Record, kept: Array) -> Record:
-    """The same record with only the particles that a mask or an index array names.
-
-    Arrays of no particles stay as they are: a material that cannot fail keeps no failure times.
-    """
-    return type(record)(*(np.ascontiguousarray(array[kept]) if len(array) else array for array in record))
+    """The same record with only the particles that a mask or an index array names."""
+    return type(record)(*(np.ascontiguousarray(array[kept]) for array in record))
 
 
 def append(record: Record, more: Record) -> Record:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.boundary_conditions import BoundaryConditions
+from solver.cohesive_zones import CohesiveZones
 from solver.contact.law import ContactLaw, ContactScene
 from solver.flags import Flags
 from solver.grid import FACES, Grid, NodeBlock
@@ -26,7 +27,7 @@ from solver.kernels.chunks import number_of_chunks
 from solver.kernels.transfer import CHANNELS, EXTERNAL_FORCE, GATHERED, MOTION_SUMS, Transfer
 from solver.lanes import new_rows
 from solver.materials.constitutive import Material, Step, initial_sound_speed, numbers_only, time_step_limit
-from solver.materials.failure import Failure, new_failure
+from solver.materials.failure import Failure
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.particles import Particles, keep
 from solver.team import Team, node_blocks
@@ -71,7 +72,7 @@ class Body:
     model: Any
     state: Any
     particles: Particles
-    failure: Failure = field(default_factory=lambda: new_failure(None, None, 0))
+    failure: Failure
     rigid: bool = False
     transmits_force: bool = False
     activation_time: float = 0.0
@@ -115,6 +116,7 @@ class Simulation:
     spread_corner_loads : adds external forces by particle corners (CBDI), in place of particle weights.
     whole_grid : nodes that no particle touches take part too, for those who look at nodal values afterwards.
     team : the threads that share the loops over particles; the results do not depend on how many they are.
+    cohesive_zones : those of each file, in the deck's order; hooks make them act.
     """
 
     grid: Grid
@@ -133,6 +135,7 @@ class Simulation:
     spread_corner_loads: Callable[[Body, Array], None] | None = None
     whole_grid: bool = False
     team: Team = field(default_factory=Team)
+    cohesive_zones: list[CohesiveZones] = field(default_factory=list)
     time: float = 0.0
     step_number: int = 0
     reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
@@ -234,6 +237,19 @@ class Simulation:
         self.time += dt
         self.step_number += 1
         return self._bounded(stable)
+
+    def records(self, index: int) -> tuple[Any, ...]:
+        """All arrays of a material; those of cohesive zones, one record each, come after those of bodies."""
+        if index < len(self.bodies):
+            return self.bodies[index].records
+        return (self.cohesive_zones[index - len(self.bodies)].zones,)
+
+    def replace_records(self, index: int, records: tuple[Any, ...]) -> None:
+        """Give a material other arrays, as of a checkpoint."""
+        if index < len(self.bodies):
+            self.bodies[index].records = records
+        else:
+            (self.cohesive_zones[index - len(self.bodies)].zones,) = records
 
     # ---- particles to grid ---------------------------------------------------------------------------------
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
+from solver.cohesive_zones import CohesiveZone
 from solver.contact import CONTACT
 from solver.creation import GeometryObject
 from solver.declare import IntVector, Parameter, SubModel, Vector, one_of
 from solver.flags import Flags
+from solver.geometry.null import Null
 from solver.loads import LOAD
 from solver.materials import CONSTITUTIVE_MODEL
 from solver.materials.constitutive import Material
@@ -246,11 +249,24 @@ class MaterialSection:
             thermal_expansion=self.linear_thermal_expansion_coef,
         )
 
+    @property
+    def damage(self) -> Any:
+        """Its damage model, which decks of old gave inside the constitutive model; None without."""
+        return self.damage_model or getattr(self.constitutive_model, "damage_model", None)
+
+    @property
+    def waits(self) -> bool:
+        """Whether its particles come later: it has no shape, or shapes that hold nothing."""
+        return all(isinstance(piece, Null) for body in self.geom_object for piece in body.pieces)
+
+    def of_failed_particles(self) -> MaterialSection:
+        """The same material without bodies, for its failed particles to go to."""
+        return replace(self, geom_object=(), name=f"{self.name} (failed)".strip())
+
     def faults(self) -> list[tuple[str, str]]:
         """Models that make no sense together, each with why."""
-        damage = self.damage_model or getattr(self.constitutive_model, "damage_model", None)
         try:
-            for_constitutive_model(damage, self.constitutive_model)
+            for_constitutive_model(self.damage, self.constitutive_model)
         except ValueError as problem:
             return [("damage_model", str(problem))]
         return []
@@ -262,6 +278,7 @@ class MPMMaterials:
 
     material: Annotated[tuple[MaterialSection, ...], Parameter("a material")]
     contact: Annotated[tuple[Any, ...], SubModel(CONTACT.name, many=True)] = ()
+    cohesive_zone: Annotated[tuple[CohesiveZone, ...], Parameter("zones that tie materials")] = ()
     thermal_contact: Annotated[Opaque | None, Parameter("materials exchange heat at nodes they share")] = None
 
 
@@ -305,6 +322,38 @@ class Specification:
         default_factory=PhysicalConstants
     )
     PhysicalBC: Annotated[PhysicalBC, Parameter("loads")] = field(default_factory=PhysicalBC)
+
+    @cached_property
+    def materials(self) -> tuple[MaterialSection, ...]:
+        """The materials of particles by their indices: the deck's, and those it asks to be made of them.
+
+        With ``create_new_particles`` each is followed by a copy that takes over its failed particles.
+        """
+        given = self.MaterialProperties.MPM.material
+        if not self.MPM.create_new_particles:
+            return given
+        return tuple(m for section in given for m in (section, section.of_failed_particles()))
+
+    @property
+    def conversions(self) -> dict[int, int]:
+        """Index of a material -> index of the one that its failed particles are converted into."""
+        count = len(self.materials)
+        if self.MPM.create_new_particles:
+            return {m: m + 1 for m in range(0, count, 2)}
+        waiting = next((m for m, section in enumerate(self.materials) if section.waits), None)
+        if not self.MPM.manual_new_material or waiting is None:
+            return {}
+        return {m: waiting for m in range(count) if m != waiting}
+
+    def faults(self) -> list[tuple[str, str]]:
+        """Sections that do not go together, each with why."""
+        if self.MPM.manual_new_material and not self.conversions:
+            message = (
+                "manual_new_material needs two materials, of which one waits for the failed particles of the "
+                "others with <null/> as the shape of its geom_object"
+            )
+            return [("MPM", message)]
+        return []
 
 
 @dataclass(frozen=True)

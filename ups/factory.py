@@ -182,7 +182,7 @@ class _Builder:
         grid = self._grid()
         interpolator = self._interpolator(grid)
         contact: tuple[ContactLaw, ...] = self.spec.MaterialProperties.MPM.contact
-        materials = self.spec.MaterialProperties.MPM.material
+        materials = self.spec.materials
         for law in contact:
             self._guard("UPS402", law, lambda law=law: law.check(len(materials)))  # type: ignore[misc]
         loads = self._loads(grid)
@@ -209,6 +209,8 @@ class _Builder:
         )
         self._attach_loads(simulation, loads, creations)
         self._attach_motions(simulation)
+        self._attach_cohesive_zones(simulation)
+        self._attach_conversion(simulation, loads)
         return simulation
 
     # ---- parts ---------------------------------------------------------------------------------------------
@@ -230,7 +232,6 @@ class _Builder:
         asked = {
             "time_integrator implicit": flags.time_integrator != "explicit",
             "interpolator 4thorderBS": flags.interpolator == "4thorderBS",
-            "use_cohesive_zones": flags.use_cohesive_zones,
             "refine_particles": flags.refine_particles,
             "DoGranularMPM": flags.granular,
             "RunMMSProblem": bool(flags.manufactured_solution),
@@ -309,7 +310,7 @@ class _Builder:
         ids = ParticleIds(grid)
         find_surface = loads is not None or any(law.needs_surface for law in contact)
         creations = []
-        for section in self.spec.MaterialProperties.MPM.material:
+        for section in self.spec.materials:
             creation = self._guard(
                 "UPS403",
                 section,
@@ -324,7 +325,7 @@ class _Builder:
                 ),
             )
             creations.append(creation)
-            if section.geom_object and len(creation.particles) == 0:
+            if not section.waits and len(creation.particles) == 0:
                 self.diagnostics.warning(
                     "UPS411", "no particle lies in the shapes of this material", self.place(section)
                 )
@@ -368,9 +369,8 @@ class _Builder:
         )
 
     def _failure(self, section: MaterialSection, creation: Creation) -> Failure:
-        """Damage and erosion of a material; decks of old gave the damage inside the constitutive model."""
-        model = section.constitutive_model
-        damage = section.damage_model or getattr(model, "damage_model", None)
+        """Damage and erosion of a material."""
+        model, damage = section.constitutive_model, section.damage
         if damage is not None:
             damage = self._guard("UPS502", damage, lambda: for_constitutive_model(damage, model))
         failure = new_failure(damage, section.erosion, len(creation.particles))
@@ -427,3 +427,41 @@ class _Builder:
             simulation.after_step.append(
                 lambda sim, dt: insertions.apply([body.particles for body in sim.bodies], sim.time, dt)
             )
+
+    def _attach_cohesive_zones(self, simulation: Any) -> None:
+        """The zones of every file, between contact and the accelerations."""
+        from solver.cohesive_zones import CohesiveZones, read_zones
+
+        if not self.flags.use_cohesive_zones:
+            return
+        grid, count, ids = simulation.grid, len(simulation.bodies), ParticleIds(simulation.grid)
+        for law in self.spec.MaterialProperties.MPM.cohesive_zone:
+            file = self._guard("UPS502", law, lambda law=law: self.deck.reader.open_file(law.cz_filename))  # type: ignore[misc]  # bound as mypy cannot see
+            zones = self._guard("UPS502", law, lambda file=file: read_zones(file, grid, count, ids))  # type: ignore[misc]  # likewise
+            if not len(zones.area):
+                self.diagnostics.warning("UPS411", f"no zone of {file} lies in the grid", self.place(law))
+            simulation.cohesive_zones.append(CohesiveZones(law, zones, grid))
+
+        def act(sim: Any, dt: float) -> None:
+            for zones in sim.cohesive_zones:
+                zones.act(sim.nodal, dt)
+
+        def settle(sim: Any, dt: float) -> None:
+            for zones in sim.cohesive_zones:
+                zones.settle()
+
+        simulation.after_contact.append(act)
+        simulation.after_step.append(settle)
+
+    def _attach_conversion(self, simulation: Any, loads: Loads | None) -> None:
+        """Failed particles go to the materials that take them, with the loads on them."""
+        from solver.conversion import convert_failed_particles
+
+        targets = self.spec.conversions
+
+        def convert(sim: Any, dt: float) -> None:
+            if convert_failed_particles(sim.bodies, targets) and loads is not None:
+                loads.resume([body.particles for body in sim.bodies], loads.counts)
+
+        if targets:
+            simulation.after_step.append(convert)

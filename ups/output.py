@@ -27,6 +27,7 @@ from ups.quantities import (
     Quantity,
     StressHolder,
     Sum,
+    material_count,
     nodal_quantities,
     particle_quantities,
     sums,
@@ -93,7 +94,7 @@ class _Planner:
 
     def __init__(self, specification: Specification, place: Place, diagnostics: Diagnostics) -> None:
         self.section = specification.DataArchiver
-        self.materials = len(specification.MaterialProperties.MPM.material)
+        self.materials = material_count(specification)
         self.faces = specification.MPM.boundary_traction_faces
         self.place = place
         self.diagnostics = diagnostics
@@ -188,15 +189,16 @@ class _Planner:
         self.diagnostics.error("UPS406", message, at, suggestion_for(label, candidates))
 
     def _with_identity(self) -> dict[str, Quantity]:
-        """Positions and identities go with any particle variable, for all materials that have one."""
+        """Positions and identities go with any particle variable, for all materials that have them."""
         particles = [q for q in self.fields.values() if q.variable.is_particle]
         if not particles:
             return self.fields
-        materials = tuple(sorted({m for q in particles for m in q.materials}))
-        heads = {
-            label: replace(self.fields.get(label, self.known_fields[label]), materials=materials)
-            for label in (POSITION, IDENTITY)
-        }
+        materials = sorted({m for q in particles for m in q.materials})
+        heads = {}
+        for label in (POSITION, IDENTITY):
+            known = self.known_fields[label].materials
+            head = self.fields.get(label, self.known_fields[label])
+            heads[label] = replace(head, materials=tuple(m for m in materials if m in known))
         return heads | {label: q for label, q in self.fields.items() if label not in heads}
 
 

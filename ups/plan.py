@@ -38,6 +38,7 @@ class RunPlan:
     Attributes
     ----------
     materials : in the order of their indices.
+    zones : name and number of the cohesive zones of each file, whose materials come after these.
     cells : of the grid in each direction.
     nodes : of the grid, those outside its faces included.
     first_step : the first time step, in the deck's unit of time.
@@ -48,6 +49,7 @@ class RunPlan:
     """
 
     materials: tuple[MaterialPlan, ...]
+    zones: tuple[tuple[str, int], ...]
     cells: tuple[int, int, int]
     nodes: int
     first_step: float
@@ -82,22 +84,26 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     steps = control.foreseen_steps(stable, control.initTime)
     materials = tuple(
         MaterialPlan(body.index, section.name, _model_name(section.constitutive_model), len(body.particles))
-        for body, section in zip(
-            simulation.bodies, specification.MaterialProperties.MPM.material, strict=True
-        )
+        for body, section in zip(simulation.bodies, specification.materials, strict=True)
     )
+    zones = tuple((tied.law.name, len(tied.zones.area)) for tied in simulation.cohesive_zones)
     particles = sum(material.particles for material in materials)
     nodes = math.prod(n + 3 for n in simulation.grid.cells)
     outputs = _outputs(specification, steps, usual)
     return RunPlan(
         materials=materials,
+        zones=zones,
         cells=simulation.grid.cells,
         nodes=nodes,
         first_step=first,
         steps=steps,
         outputs=outputs,
         memory=particles * BYTES_A_PARTICLE + nodes * len(materials) * BYTES_A_NODE,
-        archive=outputs * _bytes_an_output(specification, particles, nodes * len(materials)),
+        archive=outputs
+        * _bytes_an_output(
+            specification,
+            {"p.": particles, "g.": nodes * len(materials), "cz.": sum(count for _, count in zones)},
+        ),
         seconds=particles * steps * SECONDS_A_PARTICLE_STEP,
     )
 
@@ -119,14 +125,19 @@ def _outputs(specification: Specification, steps: int, step: float) -> int:
     return 0
 
 
-def _bytes_an_output(specification: Specification, particles: int, nodes: int) -> int:
-    """Size of one output: doubles, with nine components for tensors and three for vectors."""
+def _bytes_an_output(specification: Specification, counts: dict[str, int]) -> int:
+    """Size of one output: doubles, with nine components for tensors and three for vectors.
+
+    ``counts`` has the number of values of labels by what these begin with.
+    """
     width = 4 if specification.DataArchiver.outputDoubleAsFloat else 8
-    total = 0
-    for save in specification.DataArchiver.save:
-        if save.label.startswith(("p.", "g.")):
-            total += width * _components(save.label) * (particles if save.label.startswith("p.") else nodes)
-    return total
+    labels = [save.label for save in specification.DataArchiver.save]
+    return sum(
+        width * _components(label) * count
+        for label in labels
+        for prefix, count in counts.items()
+        if label.startswith(prefix)
+    )
 
 
 def _components(label: str) -> int:
@@ -135,7 +146,7 @@ def _components(label: str) -> int:
         for word in ("stress", "deformationMeasure", "velGrad", "size", "scalefactor", "rotation")
     ):
         return 9
-    vectors = ("p.x", "velocity", "displacement", "force", "acceleration", "Gradient")
+    vectors = ("p.x", "velocity", "disp", "force", "acceleration", "Gradient", "separation", "norm", "tang")
     return 3 if any(word in label for word in vectors) else 1
 
 
@@ -145,6 +156,8 @@ def _lines(plan: RunPlan) -> Iterator[str]:
     for material in plan.materials:
         name = f" ({material.name})" if material.name else ""
         yield f"material {material.index}  {material.model}{name}, {material.particles} particles"
+    for number, (name, count) in enumerate(plan.zones, len(plan.materials)):
+        yield f"material {number}  {count} cohesive zones{f' ({name})' if name else ''}"
     yield f"particles   {plan.particles}"
     yield f"first step  {plan.first_step:.4g}"
     yield f"steps       about {plan.steps}"

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.cohesive_zones import ZoneState
 from solver.contact.motion import PrescribedMotion
 from solver.materials.constitutive import state_record
+from solver.materials.damage import damage_state
+from solver.materials.erosion import ErosionState
 from solver.particles import Particles, StateVariable, state_variables
 from ups.archive import Variable
 from ups.archive.variables import GLOBAL_MATERIAL, NODE, PARTICLE, REDUCTION
@@ -120,44 +123,54 @@ class StressHolder:
 
 def particle_quantities(specification: Specification) -> dict[str, Quantity]:
     """Everything that particles carry, by label: what all have, and what their materials' models add."""
-    models = [m.constitutive_model for m in specification.MaterialProperties.MPM.material]
-    found = {
-        variable.label: Quantity(
-            Variable(variable.label, PARTICLE, variable.element),
-            tuple(range(len(models))),
-            _of_particles(name),
+    records: dict[int, tuple[type, ...]] = {
+        m: (
+            Particles,
+            state_record(section.constitutive_model),
+            damage_state(section.damage),
+            *([ErosionState] if section.erosion is not None else []),
         )
-        for name, variable in state_variables(Particles).items()
-        if variable.label
+        for m, section in enumerate(specification.materials)
     }
-    for label, (variable, names) in _model_states(models).items():
-        if label not in found:
-            declared = Variable(label, PARTICLE, variable.element)
-            found[label] = Quantity(declared, tuple(names), _of_state(names))
+    bodies = tuple(records)
+    records |= dict.fromkeys(range(len(records), material_count(specification)), (ZoneState,))
+    found = {
+        label: Quantity(Variable(label, PARTICLE, variable.element), tuple(where), _of_records(where))
+        for label, (variable, where) in _kept_in(records).items()
+    }
     found["p.scalefactor"] = Quantity(
-        Variable("p.scalefactor", PARTICLE, "Matrix3"), tuple(range(len(models))), _particle_edges, False
+        Variable("p.scalefactor", PARTICLE, "Matrix3"), bodies, _particle_edges, False
     )
     return found
 
 
-def _model_states(models: Iterable[Any]) -> dict[str, tuple[StateVariable, dict[int, str]]]:
-    """Label -> declaration, and material -> field of its state, for what models keep on particles."""
-    found: dict[str, tuple[StateVariable, dict[int, str]]] = {}
-    for m, model in enumerate(models):
-        for name, variable in state_variables(state_record(model)).items():
-            first, names = found.setdefault(variable.label, (variable, {}))
-            if variable.label and first.element == variable.element:
-                names[m] = name
+def material_count(specification: Specification) -> int:
+    """How many materials an archive has: those of particles, and after them those of cohesive zones."""
+    flags, section = specification.MPM, specification.MaterialProperties.MPM
+    return len(specification.materials) + len(section.cohesive_zone) * flags.use_cohesive_zones
+
+
+def _kept_in(
+    records: Mapping[int, tuple[type, ...]],
+) -> dict[str, tuple[StateVariable, dict[int, tuple[int, str]]]]:
+    """Label -> declaration, and material -> number and field of the record that keeps it; the first has it."""
+    found: dict[str, tuple[StateVariable, dict[int, tuple[int, str]]]] = {}
+    for m, kept in records.items():
+        for number, record in enumerate(kept):
+            for name, variable in state_variables(record).items():
+                first, where = found.setdefault(variable.label, (variable, {}))
+                if first.element == variable.element:
+                    where.setdefault(m, (number, name))
     found.pop("", None)
     return found
 
 
-def _of_particles(name: str) -> Callable[[Simulation, int], Array]:
-    return lambda simulation, m: np.asarray(getattr(simulation.bodies[m].particles, name))
+def _of_records(where: Mapping[int, tuple[int, str]]) -> Callable[[Simulation, int], Array]:
+    def values(simulation: Simulation, m: int) -> Array:
+        number, name = where[m]
+        return np.asarray(getattr(simulation.records(m)[number], name))
 
-
-def _of_state(names: Mapping[int, str]) -> Callable[[Simulation, int], Array]:
-    return lambda simulation, m: np.asarray(getattr(simulation.bodies[m].state, names[m]))
+    return values
 
 
 def _particle_edges(simulation: Simulation, m: int) -> Array:
@@ -169,8 +182,8 @@ def _particle_edges(simulation: Simulation, m: int) -> Array:
 
 def nodal_quantities(specification: Specification, stress: StressHolder) -> dict[str, Quantity]:
     """Everything at the nodes, by label; ``stress`` records the stress there."""
-    count = len(specification.MaterialProperties.MPM.material)
-    each, with_all = tuple(range(count)), tuple(range(count + 1))
+    each = tuple(range(len(specification.materials)))
+    with_all = (*each, material_count(specification))
     found = {}
     for label, (field, element) in NODAL_FIELDS.items():
         mean = _MEANS.get(field)
@@ -187,7 +200,7 @@ def nodal_quantities(specification: Specification, stress: StressHolder) -> dict
 def _of_nodes(field: str, mean: Callable[[Any, Array], Array] | None) -> Callable[[Simulation, int], Array]:
     def values(simulation: Simulation, m: int) -> Array:
         nodal = getattr(simulation.nodal, field)
-        if mean is not None and m == len(simulation.bodies):
+        if mean is not None and m >= len(simulation.bodies):
             return on_lattice(simulation.grid, mean(simulation.nodal, nodal))
         return on_lattice(simulation.grid, nodal[m])
 
@@ -247,7 +260,7 @@ def on_lattice(grid: Grid, nodal: Array) -> Array:
 def sums(specification: Specification) -> dict[str, Sum]:
     """Every history that a deck can save, by label."""
     section = specification.MaterialProperties.MPM
-    count = len(section.material)
+    count = len(specification.materials)
     everything = (GLOBAL_MATERIAL, *range(count)) if count > 1 else (GLOBAL_MATERIAL,)
     by_material = dict(SUMS_BY_MATERIAL)
     if any(isinstance(law, PrescribedMotion) for law in section.contact):

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.particles import Particles, new_arrays, state_variables
+from solver.particles import new_arrays, state_variables
 from ups.archive import Archive, ArchiveError, ArchiveWriter, Variable
 from ups.archive.variables import GLOBAL_MATERIAL, PARTICLE, REDUCTION
 from ups.output import HistoryOutput, TimestepOutput, archive_grid
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 DELT = Variable("delT", REDUCTION, "double")
-FORM = 1
+FORM = 2
 """Version of what ``state`` holds; a checkpoint of another version is refused."""
 
 
@@ -52,14 +52,23 @@ class RunState:
     next_checkpoint: tuple[float, int]
 
 
+KINDS = ("particles", "state", "damage", "erosion")
+"""The records of a body, in its order; cohesive zones have one, of the first kind."""
+
+
 @dataclass(frozen=True)
 class _Stored:
-    """One array of a body: of its particles or its model's state, and its label in an archive, if any."""
+    """One array of a material: which of its records it is in, and its label in an archive, if any."""
 
     material: int
-    kind: str
+    record: int
     name: str
     variable: Variable | None
+
+    @property
+    def kind(self) -> str:
+        """Which of the records, in a word."""
+        return KINDS[self.record]
 
     @property
     def key(self) -> str:
@@ -70,10 +79,10 @@ class _Stored:
 def _stored_arrays(simulation: Simulation) -> Iterator[_Stored]:
     """Every array that a checkpoint keeps; of two that claim one label the first has it."""
     declared: dict[str, Variable] = {}
-    for body in simulation.bodies:
+    for material in range(_materials(simulation)):
         taken: set[str] = set()
-        for kind in ("particles", "state"):
-            for name, variable in state_variables(type(getattr(body, kind))).items():
+        for number, record in enumerate(simulation.records(material)):
+            for name, variable in state_variables(type(record)).items():
                 if not variable.restart:
                     continue
                 label = variable.label
@@ -81,7 +90,12 @@ def _stored_arrays(simulation: Simulation) -> Iterator[_Stored]:
                 if mine is not None and declared.setdefault(label, mine) != mine:
                     mine = None
                 taken.add(label)
-                yield _Stored(body.index, kind, name, mine)
+                yield _Stored(material, number, name, mine)
+
+
+def _materials(simulation: Simulation) -> int:
+    """The number of materials with arrays of their own, cohesive zones included."""
+    return len(simulation.bodies) + len(simulation.cohesive_zones)
 
 
 def write_checkpoint(writer: ArchiveWriter, run: Run, state: RunState, cycle: int) -> None:
@@ -90,7 +104,7 @@ def write_checkpoint(writer: ArchiveWriter, run: Run, state: RunState, cycle: in
     fields: dict[Variable, dict[int, Array]] = {}
     others = _simulation_state(simulation) | _run_state_arrays(state)
     for stored in _stored_arrays(simulation):
-        array = getattr(getattr(simulation.bodies[stored.material], stored.kind), stored.name)
+        array = getattr(simulation.records(stored.material)[stored.record], stored.name)
         if stored.variable is None:
             others[stored.key] = array
         else:
@@ -123,9 +137,9 @@ def _simulation_state(simulation: Simulation) -> dict[str, Any]:
     """What the simulation keeps beside the arrays of its particles."""
     found: dict[str, Any] = {}
     level = archive_grid(simulation.grid).levels[0]
-    for body in simulation.bodies:
-        owners = level.nearest_patch(body.particles.position)
-        found[f"order/{body.index}"] = np.argsort(owners, kind="stable")
+    for material in range(_materials(simulation)):
+        owners = level.nearest_patch(simulation.records(material)[0].position)
+        found[f"order/{material}"] = np.argsort(owners, kind="stable")
     for face, force in simulation.face_forces.items():
         found[f"face_force/{face}"] = np.array(force)
     for number, law in enumerate(simulation.contact_laws):
@@ -177,7 +191,7 @@ def _due(pair: Array) -> tuple[float, int]:
 def _restore_particles(
     simulation: Simulation, checkpoints: Archive, step: int, state: dict[str, Array]
 ) -> None:
-    arrays: dict[tuple[int, str], dict[str, Array]] = {}
+    arrays: dict[tuple[int, int], dict[str, Array]] = {}
     for stored in list(_stored_arrays(simulation)):
         order = state[f"order/{stored.material}"]
         if stored.variable is None:
@@ -186,11 +200,16 @@ def _restore_particles(
             by_patch = checkpoints.particles(step, stored.variable.name, stored.material)
             array = np.empty_like(by_patch, dtype=by_patch.dtype.newbyteorder("="))
             array[order] = by_patch
-        arrays.setdefault((stored.material, stored.kind), {})[stored.name] = np.ascontiguousarray(array)
-    for body in simulation.bodies:
-        count = len(state[f"order/{body.index}"])
-        body.particles = _filled(Particles, count, arrays[body.index, "particles"])
-        body.state = _filled(type(body.state), count, arrays.get((body.index, "state"), {}))
+        arrays.setdefault((stored.material, stored.record), {})[stored.name] = np.ascontiguousarray(array)
+    for material in range(_materials(simulation)):
+        count = len(state[f"order/{material}"])
+        simulation.replace_records(
+            material,
+            tuple(
+                _filled(type(record), count, arrays.get((material, number), {}))
+                for number, record in enumerate(simulation.records(material))
+            ),
+        )
 
 
 def _filled(record: type, count: int, arrays: dict[str, Array]) -> Any:

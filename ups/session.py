@@ -210,7 +210,7 @@ def _go(
 def _material_names(deck: Deck) -> list[str]:
     """The constitutive model of each material, after the material's name where it has one."""
     names = []
-    for section in deck.require().MaterialProperties.MPM.material:
+    for section in deck.require().materials:
         element = deck.reader.place(section.constitutive_model)
         kind = element.attributes.get("type") if element is not None else None
         model = kind.value if kind is not None else type(section.constitutive_model).__name__

@@ -63,7 +63,7 @@ class Loads:
         self._check()
         self._laws = [load.law(grid) for load in self._loads]
         self._carried: list[set[int]] = []
-        self._normals: dict[int, ParticleNormals] = {}
+        self._normals = ParticleNormals(np.zeros(0, np.int64), NO_NORMALS)
         self._time = 0.0
         self.counts = {load.load_curve.id: load.particles_on_surface for load in self._loads}
         self.notices = doubts(self._loads, grid)
@@ -115,11 +115,13 @@ class Loads:
                     f"particles of material {material} carry a <pressure_pts> load and have no normal: their "
                     "file must give p.normal"
                 )
-            given = np.flatnonzero(creation.normal.any(axis=1))
-            self._normals[material] = ParticleNormals(creation.particles.id[given], creation.normal[given])
+        ids = np.concatenate([creation.particles.id for creation in creations])
+        normals = np.concatenate([creation.normal for creation in creations])
+        given = normals.any(axis=1)
+        self._normals = ParticleNormals(ids[given], normals[given])
 
     def resume(self, materials: Sequence[Particles], counts: Mapping[int, int]) -> None:
-        """Go on with particles that hold their curves already, as from a checkpoint, and with its counts."""
+        """Go on with particles that hold their curves already, as from a checkpoint or from other materials."""
         self.counts.update(counts)
         self._carried = [set(np.unique(particles.load_curve).tolist()) for particles in materials]
 
@@ -140,30 +142,30 @@ class Loads:
             particles.external_heat_rate[:] = 0.0
             actions = self._actions(material)
             if self._on_corners:
-                self._push_corners(actions, material, particles)
+                self._push_corners(actions, particles)
             else:
-                self._push(actions, material, particles)
+                self._push(actions, particles)
             self._heat(actions, particles)
 
-    def _push(self, actions: Sequence[_Acting], material: int, particles: Particles) -> None:
+    def _push(self, actions: Sequence[_Acting], particles: Particles) -> None:
         """Add the forces on whole particles; only pressures turn with the particle, so they come first."""
         from solver.loads.kernels.apply import add_force, turn_forces
 
         for turning in (True, False):
             for load, law, action in actions:
                 if not load.heats and load.follows_rotation == turning:
-                    normals = self._normals_for(load, material, particles)
+                    normals = self._normals_for(load, particles)
                     x, curves, force = particles.position, particles.load_curve, particles.external_force
                     add_force(law, action, x, normals, curves, force)
             if turning and self._follow_rotation:
                 turn_forces(particles.deformation_gradient, particles.external_force)
 
-    def _push_corners(self, actions: Sequence[_Acting], material: int, particles: Particles) -> None:
+    def _push_corners(self, actions: Sequence[_Acting], particles: Particles) -> None:
         from solver.loads.kernels.corners import add_corner_force
 
         for load, law, action in actions:
             if not load.heats:
-                normals = self._normals_for(load, material, particles)
+                normals = self._normals_for(load, particles)
                 add_corner_force(law, action, particles, normals, self._grid.spacing)
 
     def _heat(self, actions: Sequence[_Acting], particles: Particles) -> None:
@@ -183,13 +185,11 @@ class Loads:
 
         for load, law, action in self._actions(material):
             if not load.heats:
-                normals = self._normals_for(load, material, particles)
+                normals = self._normals_for(load, particles)
                 scatter_from_corners(law, action, particles, normals, self._grid.index, nodal_force)
 
-    def _normals_for(self, load: Load, material: int, particles: Particles) -> Array:
-        if not load.along_particle_normals:
-            return NO_NORMALS
-        return self._normals[material].of(particles.id)
+    def _normals_for(self, load: Load, particles: Particles) -> Array:
+        return self._normals.of(particles.id) if load.along_particle_normals else NO_NORMALS
 
     def _actions(self, material: int) -> list[_Acting]:
         """The loads on a material with what each does at the time of the last :meth:`apply`."""

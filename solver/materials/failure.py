@@ -30,7 +30,7 @@ def new_failure(damage: Any, erosion: Any, count: int) -> Failure:
         damage,
         new_arrays(damage_state(damage), count),
         erosion,
-        new_arrays(ErosionState, count if lets_fail(erosion) else 0),
+        new_arrays(ErosionState, count),
     )
 
 

@@ -12,6 +12,7 @@ from solver.grid import Grid, Patch
 from solver.interpolation.gimp import Gimp
 from solver.interpolation.linear import Linear, LinearAxisymmetric
 from solver.materials.constitutive import Material, NoState
+from solver.materials.failure import new_failure
 from solver.materials.hypo_elastic import HypoElastic
 from solver.particles import Particles, new_arrays
 from solver.simulation import Body, Simulation
@@ -83,7 +84,7 @@ def make_body(
         elastic(1.0, 0.0) if model is None else model,
         NoState(),
         particles,
-        **options,
+        **{"failure": new_failure(None, None, len(particles)), **options},
     )
 
 

@@ -221,5 +221,3 @@ def test_declaration():
     assert declared["sig_max"].required
     assert not declared["delta_n_fail"].required
     assert declared["delta_t"].parameter.gt == 0.0
-    assert LAW.faults() == []
-    assert [name for name, _ in LAW._replace(do_rotation=True).faults()] == ["do_rotation"]

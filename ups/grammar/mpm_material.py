@@ -49,28 +49,9 @@ class MaterialExtension(Section):
     ] = 0.0
 
 
-class CohesiveZone(Section):
-    """Cohesive segments that tie two materials and fail by opening or sliding."""
-
-    name: Annotated[str, Parameter("a name for the reader", attribute=True)] = ""
-    sig_max: Annotated[float, Parameter("greatest normal traction", unit="Pa")]
-    tau_max: Annotated[float, Parameter("greatest tangential traction", unit="Pa")]
-    delta_n: Annotated[float, Parameter("opening at the greatest normal traction", unit="m")]
-    delta_t: Annotated[float, Parameter("sliding at the greatest tangential traction", unit="m")]
-    delta_n_fail: Annotated[float, Parameter("opening at failure", unit="m")] = 0.0
-    delta_t_fail: Annotated[float, Parameter("sliding at failure", unit="m")] = 0.0
-    cz_filename: Annotated[str, Parameter("file of the segments")]
-    do_rotation: Annotated[bool, Parameter("turn the segments with the bodies")] = False
-
-
 class MaterialsExtension(Section):
     """What the materials of the material point method may hold besides materials and contact."""
 
-    cohesive_zone: Annotated[
-        Any,
-        SectionOf("ups.grammar.mpm_material:CohesiveZone", many=True),
-        Parameter("segments that tie materials", unsupported="cohesive zones"),
-    ] = ()
     diffusion_interface: Annotated[
         Any,
         SectionOf("ups.grammar.diffusion:DiffusionInterface", many=True),

@@ -58,6 +58,17 @@ p.capX | hydrostatic strength | Pa
 p.kappa | where the cap begins | Pa
 p.porePressure | pressure of the pore fluid | Pa
 p.concentration | concentration of a scalar |
+cz.area | area of a cohesive zone | m^2
+cz.norm | normal of a cohesive zone, from the bottom to the top material |
+cz.tang | first tangent of a cohesive zone |
+cz.disptop | displacement of the top material at a cohesive zone | m
+cz.dispbottom | displacement of the bottom material at a cohesive zone | m
+cz.separation | displacement of the top material against the bottom one | m
+cz.force | force of a cohesive zone on the bottom material | N
+cz.failed | 0 while a cohesive zone is sound, then steps of opening since it failed, at most 1000 |
+cz.topmat | index of the top material of a cohesive zone |
+cz.botmat | index of the bottom material of a cohesive zone |
+cz.CZID | number that tells cohesive zones apart |
 g.mass | mass at nodes | kg
 g.volume | volume at nodes | m^3
 g.velocity | velocity at nodes at the start of the step | m/s

@@ -32,7 +32,7 @@ class MaterialIndex(Rule):
 
     def check(self, deck: DeckView) -> Iterator[Diagnostic]:
         """Look at contact, loads, boundary conditions and saved variables."""
-        particles, every = len(deck.particle_materials), deck.material_count
+        particles, every = deck.particle_material_count, deck.material_count
         if not every:
             return
         for contact in deck.all("MaterialProperties/MPM/contact"):

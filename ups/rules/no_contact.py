@@ -25,7 +25,7 @@ class NoContact(Rule):
 
     def check(self, deck: DeckView) -> Iterator[Diagnostic]:
         """Count materials and contacts."""
-        materials = deck.particle_materials
-        if len(materials) > 1 and deck.find("MaterialProperties/MPM/contact") is None:
-            message = f"{len(materials)} materials and no <contact>: they pass through each other"
-            yield self.warning(message, materials[1], "add <contact>")
+        materials, count = deck.particle_materials, deck.particle_material_count
+        if count > 1 and deck.find("MaterialProperties/MPM/contact") is None:
+            message = f"{count} materials and no <contact>: they pass through each other"
+            yield self.warning(message, materials[-1], "add <contact>")

@@ -66,6 +66,11 @@ class DeckView:
         """The materials of the material point method, in the order of their indices."""
         return list(self.all("MaterialProperties/MPM/material"))
 
+    @property
+    def particle_material_count(self) -> int:
+        """How many materials of particles a run has; copies that take over failed particles count too."""
+        return len(self.particle_materials) * (2 if self.switch("MPM/create_new_particles") else 1)
+
     @cached_property
     def gas_materials(self) -> list[Element]:
         """The materials of gas dynamics, in the order of their indices."""
@@ -74,7 +79,7 @@ class DeckView:
     @cached_property
     def material_count(self) -> int:
         """How many materials there are of all kinds; those of particles come first."""
-        return len(self.particle_materials) + len(self.gas_materials)
+        return self.particle_material_count + len(self.gas_materials)
 
     @cached_property
     def domain(self) -> Domain | None:

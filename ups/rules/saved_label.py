@@ -88,11 +88,14 @@ def _is_run(model: object) -> bool:
 def _provided(deck: DeckView) -> set[str]:
     """The labels that the material point method has for the deck's models."""
     from solver.materials.constitutive import state_record
+    from solver.materials.erosion import ErosionState
     from solver.particles import Particles, state_variables
 
     found = {variable.label for variable in state_variables(Particles).values()} | {*_ALWAYS.split()}
     parts = (e for m in deck.particle_materials for e in m.children if e.tag in _WITH_STATE)
     states = {state_record(model) for part in parts if (model := deck.record(part)) is not None}
+    if any(m.get("erosion") for m in deck.particle_materials):
+        states.add(ErosionState)
     found |= {variable.label for state in states for variable in state_variables(state).values()}
     if deck.text("MPM/boundary_traction_faces"):
         found |= {name for name in LABELS if name.startswith("Bndy")}

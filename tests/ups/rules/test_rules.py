@@ -39,6 +39,13 @@ STEEL = LEFT.replace("32.e6", "160.e9").replace("12.e6", "80.e9").replace(">5.0<
 
 UNEVEN = "<spacing>[0.3,0.1,0.1]</spacing>"
 
+CONVERTING = "<create_new_particles>true</create_new_particles>"
+ZONES = """
+    <cohesive_zone>
+      <delta_n>1.0e-3</delta_n><delta_t>1.0e-3</delta_t><sig_max>1.0e6</sig_max><tau_max>1.0e6</tau_max>
+      <cz_filename>zones.txt</cz_filename>
+    </cohesive_zone>"""
+
 BREAKING = [
     ("UPS401", "error", with_box("[0.8,0.5,0.1]", "[0,0,0]"), "<upper>"),
     ("UPS401", "error", with_box("[0,0,0]", "[0.8,0.5,0.0]"), "in z"),
@@ -63,6 +70,9 @@ BREAKING = [
     ("UPS415", "warning", deck(extra=PRESSURE), "no effect"),
     ("UPS416", "warning", on_face("[0,0,0]").replace("</BCType>", OTHERWISE, 1), "otherwise"),
     ("UPS417", "warning", deck(materials=LEFT + RIGHT), "pass through"),
+    ("UPS417", "warning", deck(materials=LEFT, flags=CONVERTING), "2 materials"),
+    ("UPS425", "warning", deck(materials=LEFT + RIGHT + CONTACT + ZONES), "use_cohesive_zones"),
+    ("UPS426", "warning", deck(flags=CONVERTING), "no particle fails"),
     ("UPS418", "warning", deck(archiver=""), "interval"),
     ("UPS502", "warning", deck(materials=LEFT.replace("12.e6", "90.e6")), "Poisson"),
     ("UPS502", "warning", deck(materials=LEFT.replace("<density>", "<melt_temp>200</melt_temp><density>")), "melts"),

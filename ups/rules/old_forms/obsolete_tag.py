@@ -16,8 +16,6 @@ OBSOLETE: dict[str, dict[str, str]] = {
         "accumulate_strain_energy": "save AccStrainEnergy instead",
         "delete_rogue_particles": "particles that leave the grid are removed always",
         "turn_on_adiabatic_heating": "materials heat unless <isothermal> says otherwise",
-        "create_new_particles": "no particles are made from failed ones",
-        "manual_new_material": "no material is made from failed particles",
         "use_particle_normals": "contact laws choose how they find normals",
         "computeNormals": "contact laws choose how they find normals",
         "useLogisticRegression": "choose a contact of type friction_LR",

@@ -1,0 +1,78 @@
+"""Conversion of failed particles: they become particles of another material, with a velocity field of its own.
+
+The new surface that failure leaves is then one between two materials: contact acts across it as across any other
+(B. Banerjee, "Material point method simulations of fragmenting cylinders", 17th ASCE Engineering Mechanics
+Conference, 2004). Earlier versions of Uintah do the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.materials.constitutive import initialize
+from solver.materials.damage import initialize_damage
+from solver.particles import append, keep, new_arrays, state_variables
+
+if TYPE_CHECKING:
+    from solver.simulation import Body
+
+Array = NDArray[Any]
+
+
+def convert_failed_particles(bodies: Sequence[Body], targets: Mapping[int, int]) -> int:
+    """Move the particles that failed to other materials, and give their number.
+
+    A particle keeps its identity, place, mass, velocity, deformation, stress and heat. Of the states of the
+    models it keeps what the new material's models know by the same label; the rest starts anew.
+
+    Parameters
+    ----------
+    bodies : by index of their materials; changed in place.
+    targets : index of a material -> index of the one that takes its failed particles.
+    """
+    converted = 0
+    for source, target in targets.items():
+        failed = bodies[source].particles.localized > 0
+        if failed.any():
+            _move(bodies[source], bodies[target], failed)
+            converted += int(np.count_nonzero(failed))
+    return converted
+
+
+def _move(source: Body, target: Body, chosen: Array) -> None:
+    """Move chosen particles, a mask (n,), from one body to another."""
+    moving = tuple(keep(record, chosen) for record in source.records)
+    source.keep(~chosen)
+    if tuple(map(type, moving)) != tuple(map(type, target.records)):
+        moving = _translated(moving, target)
+    _keep_heat(moving[0], source.material.specific_heat / target.material.specific_heat)
+    target.records = tuple(append(old, new) for old, new in zip(target.records, moving, strict=True))
+
+
+def _translated(moving: tuple[Any, ...], target: Body) -> tuple[Any, ...]:
+    """Records for the models of another material, with what they know by the same labels."""
+    particles = moving[0]
+    known: dict[str, Array] = {}
+    for record in moving[1:]:
+        for name, variable in state_variables(type(record)).items():
+            known[variable.label] = getattr(record, name)
+    fresh = [new_arrays(type(record), len(particles)) for record in target.records]
+    bystander = type(particles)(*(array.copy() for array in particles))
+    patch = np.zeros(len(particles), np.int32)
+    initialize(target.model, fresh[1], bystander, target.material, patch)
+    initialize_damage(target.failure.damage, fresh[2], bystander, patch)
+    for record in fresh[1:]:
+        for name, variable in state_variables(type(record)).items():
+            if variable.label and variable.label in known:
+                getattr(record, name)[:] = known[variable.label]
+    return particles, *fresh[1:]
+
+
+def _keep_heat(particles: Any, ratio: float) -> None:
+    """Change temperatures such that the heat m c T is the same with another specific heat."""
+    particles.temperature[:] *= ratio
+    particles.previous_temperature[:] *= ratio
