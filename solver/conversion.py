@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from solver.materials.constitutive import initialize
 from solver.materials.damage import initialize_damage
+from solver.materials.erosion import lets_fail
 from solver.particles import append, keep, new_arrays, state_variables
 
 if TYPE_CHECKING:
@@ -27,7 +28,8 @@ def convert_failed_particles(bodies: Sequence[Body], targets: Mapping[int, int])
     """Move the particles that failed to other materials, and give their number.
 
     A particle keeps its identity, place, mass, velocity, deformation, stress and heat. Of the states of the
-    models it keeps what the new material's models know by the same label; the rest starts anew.
+    models it keeps what the new material's models know by the same label; the rest starts anew. As everywhere
+    nothing fails in a material whose erosion is none.
 
     Parameters
     ----------
@@ -37,7 +39,7 @@ def convert_failed_particles(bodies: Sequence[Body], targets: Mapping[int, int])
     converted = 0
     for source, target in targets.items():
         failed = bodies[source].particles.localized > 0
-        if failed.any():
+        if failed.any() and lets_fail(bodies[source].failure.erosion):
             _move(bodies[source], bodies[target], failed)
             converted += int(np.count_nonzero(failed))
     return converted

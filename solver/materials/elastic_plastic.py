@@ -29,11 +29,12 @@ from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
 from solver.materials.equation_of_state import isentropic_heating, mean_stress
 from solver.materials.equation_of_state.default_hyper import DefaultHyper
-from solver.materials.failure import plastic_strain_rate
+from solver.materials.failure import fractures, plastic_strain_rate
 from solver.materials.flow_stress import flow_stress, hardening_slope, in_step
 from solver.materials.melting import melting_temperature
 from solver.materials.melting.constant_melting import ConstantMelting
 from solver.materials.metal_parameters import (
+    BreakByStrain,
     BulkModulus,
     CheckPorosity,
     CheckStress,
@@ -155,6 +156,7 @@ class ElasticPlastic(NamedTuple):
     meanstrain_nucleation: NucleationStrain = 0.3
     stddevstrain_nucleation: NucleationSpread = 0.1
     check_TEPLA_failure_criterion: CheckPorosity = True
+    TEPLA_with_damage: BreakByStrain = False
     check_max_stress_failure: CheckStress = False
     critical_stress: CriticalStress = math.inf
     tolerance: Tolerance = 1.0e-10
@@ -220,7 +222,12 @@ def __getattr__(name: str) -> type:
 
 @implements(plastic_strain_rate, ElasticPlastic)
 def _(model: ElasticPlastic, state: Any, p: int) -> float:
-    return state.plastic_strain_rate[p]
+    return state.plastic_strain_rate[p] if model.evolve_damage else 0.0
+
+
+@implements(fractures, ElasticPlastic)
+def _(model: ElasticPlastic, state: Any, p: int, damage: float) -> bool:
+    return breaks(model, state.porosity[p], state.plastic_strain_rate[p], damage)
 
 
 @initial_sound_speed.register
@@ -493,7 +500,7 @@ def fails(
 ) -> bool:
     """Whether a particle melts, reaches the critical stress or porosity, or deforms unstably.
 
-    The porosity criterion is TEPLA-F without its damage term (Johnson and Addessio 1988): f^2 / f_c^2 > 1.
+    The porosity criterion is TEPLA-F without its strain term, f^2 / f_c^2 > 1, as in Uintah; see :func:`breaks`.
     """
     if flow.melted:
         return True
@@ -504,6 +511,19 @@ def fails(
     if model.check_TEPLA_failure_criterion and porosity > model.critical_porosity:
         return True
     return is_checked(model.stability_check) and is_unstable(model, start, flow, stress, motion, porosity)
+
+
+@inline
+def breaks(model: Any, porosity: float, plastic_strain_rate: float, damage: float) -> bool:
+    """Whether a flowing particle breaks by TEPLA-F (Johnson and Addessio 1988; Banerjee 2012, Eq. 75).
+
+    (f / f_c)^2 + (e_p / e_p^f)^2 > 1, where damage stands for the ratio of the strains, which it sums up over a
+    path along which the strain at fracture changes.
+    """
+    if not (model.failure_is_checked and model.check_TEPLA_failure_criterion and model.TEPLA_with_damage):
+        return False
+    voids = porosity / model.critical_porosity
+    return plastic_strain_rate > 0.0 and voids * voids + damage * damage > 1.0
 
 
 @inline

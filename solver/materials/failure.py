@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from solver.dispatch import generic_with_default, inline
 from solver.materials.constitutive import DELETE, Material, Point, Step, StressUpdate
-from solver.materials.damage import DamagePoint, damage_state, update_damage
+from solver.materials.damage import DamagePoint, damage_state, scalar_damage, update_damage
 from solver.materials.damage.no_damage import NoDamage
 from solver.materials.erosion import ErosionState, erode, lets_fail, restrain
 from solver.materials.erosion.no_erosion import NoErosion
@@ -36,8 +36,14 @@ def new_failure(damage: Any, erosion: Any, count: int) -> Failure:
 
 @generic_with_default
 def plastic_strain_rate(model: Any, state: Any, p: int) -> float:
-    """Rate of plastic strain that particle ``p`` had in the step; 0 for models without plasticity."""
+    """Rate of plastic strain that damages particle ``p`` in the step; 0 for models without plasticity."""
     return 0.0
+
+
+@generic_with_default
+def fractures(model: Any, state: Any, p: int, damage: float) -> bool:
+    """Whether particle ``p`` breaks by its porosity together with a scalar damage."""
+    return False
 
 
 def check_flows(damage: str, constitutive_model: Any) -> None:
@@ -101,11 +107,13 @@ def weakened(
         material,
         step,
     )
-    stress = damaged.stress
-    if lets_fail(failure.erosion) and damaged.localized != DELETE:
-        if damaged.localized != point.localized:
+    stress, localized = damaged.stress, damaged.localized
+    if localized == 0 and fractures(model, state, p, scalar_damage(failure.damage, failure.damage_state, p)):
+        localized = 1
+    if lets_fail(failure.erosion) and localized != DELETE:
+        if localized != point.localized:
             failure.erosion_state.failure_time[p] = step.time
-        if damaged.localized != 0:
+        if localized != 0:
             stress = erode(failure.erosion, stress, step.time - failure.erosion_state.failure_time[p])
     return StressUpdate(
         stress,
@@ -113,5 +121,5 @@ def weakened(
         new.strain_energy,
         new.heating_rate,
         new.artificial_pressure,
-        damaged.localized,
+        localized,
     )

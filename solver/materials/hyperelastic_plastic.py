@@ -24,6 +24,7 @@ from solver.materials.distribution.constant import Constant
 from solver.materials.elastic_plastic import (
     LARGEST_EXPANSION,
     Kinematics,
+    breaks,
     deviatoric_flow,
     fails,
     given_up,
@@ -35,9 +36,10 @@ from solver.materials.elastic_plastic import (
 )
 from solver.materials.equation_of_state import mean_stress
 from solver.materials.equation_of_state.default_hyper import DefaultHyper
-from solver.materials.failure import plastic_strain_rate
+from solver.materials.failure import fractures, plastic_strain_rate
 from solver.materials.melting.constant_melting import ConstantMelting
 from solver.materials.metal_parameters import (
+    BreakByStrain,
     BulkModulus,
     CheckPorosity,
     CheckStress,
@@ -132,6 +134,7 @@ class HyperElasticPlastic(NamedTuple):
     meanstrain_nucleation: NucleationStrain = 0.3
     stddevstrain_nucleation: NucleationSpread = 0.1
     check_TEPLA_failure_criterion: CheckPorosity = True
+    TEPLA_with_damage: BreakByStrain = False
     check_max_stress_failure: CheckStress = False
     critical_stress: CriticalStress = math.inf
     failure_is_checked: bool = False
@@ -150,6 +153,11 @@ class HyperElasticPlastic(NamedTuple):
 @implements(plastic_strain_rate, HyperElasticPlastic)
 def _(model: HyperElasticPlastic, state: Any, p: int) -> float:
     return state.plastic_strain_rate[p]
+
+
+@implements(fractures, HyperElasticPlastic)
+def _(model: HyperElasticPlastic, state: Any, p: int, damage: float) -> bool:
+    return breaks(model, state.porosity[p], state.plastic_strain_rate[p], damage)
 
 
 @initial_sound_speed.register

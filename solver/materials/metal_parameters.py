@@ -41,6 +41,13 @@ NucleationSpread: TypeAlias = Annotated[
     float, Parameter("standard deviation of the plastic strain of nucleation", gt=0.0)
 ]
 CheckPorosity: TypeAlias = Annotated[bool, Parameter("whether a particle fails at the critical porosity")]
+BreakByStrain: TypeAlias = Annotated[
+    bool,
+    Parameter(
+        "whether the criterion of porosity f^2 / f_c^2 > 1 becomes TEPLA-F as it was published, "
+        "f^2 / f_c^2 + D^2 > 1 with the damage D of johnson_cook or hancock_mackenzie"
+    ),
+]
 CheckStress: TypeAlias = Annotated[bool, Parameter("whether a particle fails at the critical stress")]
 CriticalStress: TypeAlias = Annotated[
     float, Parameter("largest principal stress at failure", unit="Pa", gt=0.0)
@@ -67,6 +74,4 @@ ModifiedEos: TypeAlias = Annotated[
         ignored="only the coupled gas-solid method asks the material for its density at a pressure",
     ),
 ]
-EvolveDamage: TypeAlias = Annotated[
-    bool, Parameter("whether damage evolves", ignored="it does where there is a damage_model")
-]
+EvolveDamage: TypeAlias = Annotated[bool, Parameter("whether damage grows with plastic strain")]

@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 from numpy.typing import NDArray
 
 from solver.declare import family
-from solver.dispatch import generic
+from solver.dispatch import generic, generic_with_default
 from solver.materials.constitutive import Material, NoState, Step
 from solver.particles import Array, Particles, StateVariable
 from solver.tensor import Tensor
@@ -59,6 +59,12 @@ def update_damage(
 ) -> DamageUpdate:
     """Update the damage of particle ``p``; the model's own ``state`` arrays are updated in place."""
     raise NotImplementedError
+
+
+@generic_with_default
+def scalar_damage(model: Any, state: Any, p: int) -> float:
+    """Plastic strain of particle ``p`` over that at fracture; 0 for models that do not count it."""
+    return 0.0
 
 
 @singledispatch

@@ -16,6 +16,7 @@ from solver.materials.damage import (
     ScalarDamage,
     for_constitutive_model,
     initialize_damage,
+    scalar_damage,
     update_damage,
 )
 from solver.materials.distribution import draw
@@ -84,3 +85,8 @@ def _(
         exponent = min(1.5 * mean / equivalent, LARGEST_EXPONENT)
         state.damage[p] += point.plastic_strain_rate * step.dt * math.exp(exponent) / 1.65
     return DamageUpdate(point.stress, point.localized)
+
+
+@implements(scalar_damage, HancockMacKenzieDamage)
+def _(model: HancockMacKenzieDamage, state: ScalarDamage, p: int) -> float:
+    return state.damage[p]

@@ -16,6 +16,7 @@ from solver.materials.damage import (
     ScalarDamage,
     for_constitutive_model,
     initialize_damage,
+    scalar_damage,
     update_damage,
 )
 from solver.materials.distribution import draw
@@ -101,3 +102,8 @@ def _(
     damage = state.damage[p] + point.plastic_strain_rate * step.dt / strain
     state.damage[p] = damage if damage >= model.critical_scalar_damage else 0.0
     return DamageUpdate(point.stress, point.localized)
+
+
+@implements(scalar_damage, JohnsonCookDamage)
+def _(model: JohnsonCookDamage, state: ScalarDamage, p: int) -> float:
+    return state.damage[p]

@@ -167,23 +167,34 @@ def choices() -> list[Choice]:
 class Specimen:
     """One particle of a choice, with damage and erosion, that the step of a simulation takes along."""
 
-    def __init__(self, model: Any, damage: Any, temperature: float = TEMPERATURE) -> None:
+    def __init__(
+        self,
+        model: Any,
+        damage: Any,
+        temperature: float = TEMPERATURE,
+        *,
+        erosion: Any = None,
+        material: Material = COPPER,
+        viscosity_heating: bool = True,
+    ) -> None:
         self.model = model
+        self.material = material
+        self.viscosity_heating = viscosity_heating
         self.particles: Any = new_arrays(Particles, 1)
-        self.particles.volume[:], self.particles.mass[:] = 1.0e-9, COPPER.density * 1.0e-9
+        self.particles.volume[:], self.particles.mass[:] = 1.0e-9, material.density * 1.0e-9
         self.particles.temperature[:] = self.particles.previous_temperature[:] = temperature
         self.state: Any = new_arrays(state_record(model), 1)
         patch = np.zeros(1, np.int64)
         if type(model) in initialize.registry:
-            initialize(model, self.state, self.particles, COPPER, patch)
-        self.failure = new_failure(damage, ZeroStress(), 1)
+            initialize(model, self.state, self.particles, material, patch)
+        self.failure = new_failure(damage, ZeroStress() if erosion is None else erosion, 1)
         initialize_damage(damage, self.failure.damage_state, self.particles, patch)
         self.time = 0.0
 
     def advance(self, velocity_gradient: Any, dt: float, compiled: bool = False) -> Any:
         """One step; returns the sums of the stress update."""
         self.particles.velocity_gradient[0] = velocity_gradient
-        step = Step(dt, self.time, 1.0e-3, True, 0.2, 2.0, True)
+        step = Step(dt, self.time, 1.0e-3, True, 0.2, 2.0, self.viscosity_heating)
         update = update_stresses if compiled else update_stresses.py_func
         self.time += dt
         sums = np.empty((1, STRESS_SUMS))
@@ -192,7 +203,7 @@ class Specimen:
             self.state,
             self.failure,
             self.particles,
-            COPPER,
+            self.material,
             step,
             Kinematics(1, False),
             np.zeros(1, np.int64),
