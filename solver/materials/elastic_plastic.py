@@ -99,6 +99,9 @@ from solver.tensor import (
     trace,
 )
 
+LEAST_SHEAR_MODULUS = 1.0e-8
+"""Pa: what is left where a law makes the shear modulus vanish."""
+
 LARGEST_EXPANSION = 1.0e5
 """A particle whose volume grew by more than this factor is removed."""
 
@@ -367,7 +370,11 @@ def plasticity_state(
     motion: Kinematics,
     old_mean_stress: float,
 ) -> PlasticityState:
-    """State of the particle from its history and the new density, with properties at its temperature."""
+    """State of the particle from its history and the new density, with properties at its temperature.
+
+    Where a law beyond its range (far above melting, near 0 K) gives a negative shear modulus, there is next to
+    none, and where it gives no positive specific heat that of the material holds.
+    """
     constant = PlasticityState(
         plastic_strain=state.plastic_strain[p],
         plastic_strain_rate=state.plastic_strain_rate[p],
@@ -385,9 +392,12 @@ def plasticity_state(
     heat = constant.specific_heat
     if model.compute_specific_heat:
         heat = specific_heat(model.specific_heat_model, constant)
+        if not heat > 0.0:
+            heat = constant.specific_heat
     melt = melting_temperature(model.melting_temp_model, constant)
     at_melt = with_thermal_properties(constant, heat, melt, model.shear_modulus)
-    return with_thermal_properties(at_melt, heat, melt, shear_modulus(model.shear_modulus_model, at_melt))
+    stiffness = max(shear_modulus(model.shear_modulus_model, at_melt), LEAST_SHEAR_MODULUS)
+    return with_thermal_properties(at_melt, heat, melt, stiffness)
 
 
 @inline

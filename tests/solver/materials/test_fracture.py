@@ -1,4 +1,4 @@
-"""Fracture by porosity and strain together (TEPLA-F), damage that is held, and heat of artificial viscosity."""
+"""Fracture by porosity and strain together (TEPLA-F), damage that is held, heat of viscosity, laws at their ends."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from test_damage_and_erosion import JC as DAMAGE
 from test_elastic_plastic import COPPER_EOS, COPPER_JC, G, K
-from test_model_exchange import COPPER, DEFORMATION, DT, Specimen
+from test_model_exchange import COPPER, DEFORMATION, DT, MODELS, Specimen
 
 from solver.materials.damage.hancock_mackenzie import HancockMacKenzieDamage
 from solver.materials.damage.no_damage import NoDamage
@@ -16,6 +16,10 @@ from solver.materials.flow_stress.isotropic_hardening import IsotropicHardening
 from solver.materials.hyperelastic_plastic import HyperElasticPlastic
 
 METALS = [ElasticPlastic, HyperElasticPlastic]
+LAWS = [
+    *(("shear_modulus_model", part) for part in MODELS["shear_modulus"]),
+    *(("specific_heat_model", part) for part in MODELS["specific_heat"]),
+]
 CHECKED = {"failure_is_checked": True, "TEPLA_with_damage": True}
 SHEAR = np.array([[0.0, 4000.0, 0.0], [4000.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
@@ -86,3 +90,19 @@ def test_artificial_viscosity_heats_by_its_work(record):
         work += q * (before - volume)
     assert hot.particles.temperature[0] - cold.particles.temperature[0] == pytest.approx(warming, rel=1e-9)
     assert hot.state.energy[0] - cold.state.energy[0] == pytest.approx(work / mass, rel=1e-9)
+
+
+@pytest.mark.parametrize("record", METALS)
+@pytest.mark.parametrize("temperature", [0.0, 1.0, 1355.9, 1356.0, 2.0e4])
+@pytest.mark.parametrize(
+    ("field", "part"), LAWS, ids=lambda v: "" if isinstance(v, str) else type(v).__name__
+)
+def test_laws_beyond_their_range_leave_numbers(record, temperature, field, part):
+    """From absolute zero to twenty thousand kelvin: the heat has its sign, and waves travel."""
+    model = metal(record, compute_specific_heat=True, **{field: part})
+    specimen = Specimen(model, NoDamage(), temperature)
+    for _ in range(3):
+        sums = specimen.advance(np.diag([-3000.0, 1000.0, 0.0]), DT)
+        assert sums.finite
+        assert 0.0 < max(sums.wave_speed) < 1.0e6
+    assert specimen.particles.temperature[0] >= temperature
