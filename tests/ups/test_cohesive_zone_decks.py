@@ -12,6 +12,7 @@ from ups.archive import Archive
 from ups.convert import convert
 from ups.deck import read_deck
 from ups.factory import build
+from ups.inspect.compare import compare_archives
 from ups.lint import lint_deck
 from ups.plan import plan_command
 from ups.session import resume_run, run_deck
@@ -112,6 +113,19 @@ def test_an_archive_holds_zones_as_a_material_after_the_others(tmp_path: Path) -
     assert "cz.force" in (tmp_path / "zones.csv").read_text().splitlines()[0]
     convert(result.directory, tmp_path / "vtk")
     assert list((tmp_path / "vtk").rglob("*.vt*"))
+
+
+def test_zones_are_compared_and_followed_by_their_own_numbers(tmp_path: Path) -> None:
+    path = glued(tmp_path, "[-0.1,0,0]", "[0.1,0,0]", saves=("p.x", "p.velocity", *LABELS))
+    ours = run_deck(read_deck(path), output=tmp_path / "a.uda").archive
+    split = path.read_text().replace("[2,2,1]</patches>", "[1,5,1]</patches>")
+    theirs = run_deck(read_deck(write(tmp_path, split, "split.ups")), output=tmp_path / "b.uda").archive
+    same = compare_archives(ours.path, theirs.path)
+    assert (same.obstacles, same.differences) == ([], [])
+    step = ours.timesteps[-1].step
+    numbers = ours.particles(step, "cz.CZID", 2)
+    track = ours.follow("cz.force", numbers[:2])
+    np.testing.assert_array_equal(track.values[-1], ours.particles(step, "cz.force", 2)[:2])
 
 
 def test_going_on_gives_the_same_bytes(tmp_path: Path) -> None:

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 IDENTITY = "p.particleID"
 """Label under which Uintah stores the identity of a particle."""
 
+IDENTITIES = (IDENTITY, "cz.CZID")
+"""The same, and that of a cohesive zone, which is stored as a particle of a material of zones."""
+
 
 @dataclass(frozen=True)
 class Track:
@@ -44,6 +47,12 @@ class Track:
     values: np.ndarray
 
 
+def identity_label(archive: Archive, step: int, material: int) -> str | None:
+    """Under which label the identities of a material's particles are stored at a step; None without any."""
+    stored = (label for label in IDENTITIES if label in archive.labels(step))
+    return next((label for label in stored if material in archive.materials(step, label)), None)
+
+
 def follow(
     archive: Archive,
     label: str,
@@ -53,15 +62,17 @@ def follow(
 ) -> Track:
     """See `Archive.follow`."""
     wanted = np.atleast_1d(np.asarray(identities, dtype=np.int64))
-    if IDENTITY not in archive.variables:
+    if not any(label in archive.variables for label in IDENTITIES):
         message = f"the identities of the particles, {IDENTITY}, are not stored"
         raise ArchiveError(archive.path, message, advice=f'add <save label="{IDENTITY}"/> to the deck')
-    declared = archive.find(label).declaration
+    named = archive.find(label)
+    declared = named.declaration
     if not declared.is_particle:
         raise ArchiveError(archive.path, f"{label} is a {declared.type_name}, not on particles")
     if steps is None:
-        needed = {label.partition(":")[0], IDENTITY}
-        chosen = [t for t in archive.timesteps if needed <= set(archive.labels(t.step))]
+        plain = named.source.name
+        labels = [(t, set(archive.labels(t.step))) for t in archive.timesteps]
+        chosen = [t for t, stored in labels if plain in stored and stored.intersection(IDENTITIES)]
     else:
         chosen = [archive.timestep(step) for step in steps]
     element = declared.element_type
@@ -72,7 +83,8 @@ def follow(
     for row, timestep in enumerate(chosen):
         searched = archive.materials(timestep.step, label) if material is None else [material]
         for index in searched:
-            there = archive.particles(timestep.step, IDENTITY, index)
+            identity = identity_label(archive, timestep.step, index)
+            there = archive.particles(timestep.step, identity, index) if identity else ()
             if not len(there):
                 continue
             order = np.argsort(there, kind="stable")

@@ -18,12 +18,11 @@ from pathlib import Path
 import numpy as np
 
 from ups.archive import Archive, ArchiveError, Level, Timestep, Variable
+from ups.archive.tracks import IDENTITY, identity_label
 from ups.archive.variables import PER_PATCH
 
 EQUAL, TOLERANCE_EXCEEDED, NOT_COMPARABLE = 0, 2, 5
 """Exit statuses of ``compare_uda``."""
-
-PARTICLE_ID = "p.particleID"
 
 
 @dataclass(frozen=True)
@@ -260,22 +259,35 @@ class _Task:
         """Values to hold against each other, material by material."""
         first, second = self.archives
         level_pairs = [self.levels] if self.levels else [(i, i) for i in range(len(first.grid(ours).levels))]
-        by_identity = variable.is_particle and all(
-            PARTICLE_ID in archive.variables for archive in self.archives
-        )
-        if by_identity and self.levels is None:
-            for material in self._materials(variable, ours, theirs, None, None):
-                yield from self._particles_by_identity(variable, ours, theirs, material)
-            return
+        named = self._identities(variable, ours, theirs)
+        for material, identity in named.items():
+            yield from self._particles_by_identity(variable, ours, theirs, material, identity)
         for here, there in level_pairs:
             levels = _level(first, ours, here), _level(second, theirs, there)
             for material in self._materials(variable, ours, theirs, here, there):
+                if material in named:
+                    continue
                 if variable.is_particle:
                     yield from self._particles_by_patch(variable, ours, theirs, material, levels)
                 elif variable.container == PER_PATCH:
                     yield self._patch_values(variable, ours, theirs, material, levels)
                 else:
                     yield self._grid_values(variable, ours, theirs, material, levels)
+
+    def _identities(self, variable: Variable, ours: int, theirs: int) -> dict[int, str]:
+        """The materials whose particles can be told apart in both archives, and the label that does so."""
+        if not variable.is_particle or self.levels is not None:
+            return {}
+        found = {}
+        for material in self._materials(variable, ours, theirs, None, None):
+            labels = {
+                identity_label(archive, step, material)
+                for archive, step in zip(self.archives, (ours, theirs), strict=True)
+            }
+            identity = labels.pop()
+            if identity is not None and not labels:
+                found[material] = identity
+        return found
 
     def _materials(
         self, variable: Variable, ours: int, theirs: int, here: int | None, there: int | None
@@ -291,11 +303,11 @@ class _Task:
         return sets[0]
 
     def _particles_by_identity(
-        self, variable: Variable, ours: int, theirs: int, material: int
+        self, variable: Variable, ours: int, theirs: int, material: int, identity: str
     ) -> Iterator[_Pair]:
         """Pair particles of the same identity; where some have no partner, the identities are what differs."""
-        first_ids, first = self._by_identity(self.archives[0], ours, variable, material)
-        second_ids, second = self._by_identity(self.archives[1], theirs, variable, material)
+        first_ids, first = self._by_identity(self.archives[0], ours, variable, material, identity)
+        second_ids, second = self._by_identity(self.archives[1], theirs, variable, material, identity)
         if len(first_ids) != len(second_ids):
             only = np.setxor1d(first_ids, second_ids)[0]
             raise _ObstacleError(
@@ -304,7 +316,7 @@ class _Task:
             )
         same = np.array_equal(first_ids, second_ids)
         if not same:
-            variable, first, second = self.archives[0].variables[PARTICLE_ID], first_ids, second_ids
+            variable, first, second = self.archives[0].variables[identity], first_ids, second_ids
         rows = _rows(first, variable), _rows(second, variable)
         yield _Pair(variable, material, 0, *rows, lambda row: f"particle {first_ids[row]}")
         if not same:
@@ -312,10 +324,10 @@ class _Task:
             raise _ObstacleError(f"only one archive has particle {only} of material {material}")
 
     def _by_identity(
-        self, archive: Archive, step: int, variable: Variable, material: int
+        self, archive: Archive, step: int, variable: Variable, material: int, identity: str
     ) -> tuple[np.ndarray, np.ndarray]:
         """Identities, ascending, and values in their order."""
-        identities = archive.particles(step, PARTICLE_ID, material)
+        identities = archive.particles(step, identity, material)
         order = np.argsort(identities, kind="stable")
         identities = identities[order]
         twice = identities[1:][identities[1:] == identities[:-1]]
@@ -330,7 +342,7 @@ class _Task:
     ) -> Iterator[_Pair]:
         if [p.interior for p in levels[0].patches] != [p.interior for p in levels[1].patches]:
             raise _ObstacleError(
-                f"the patches differ, and {variable.name} can be matched only by {PARTICLE_ID}, which is not stored"
+                f"the patches differ, and {variable.name} can be matched only by {IDENTITY}, which is not stored"
             )
         for mine, other in zip(levels[0].patches, levels[1].patches, strict=True):
             first = self.archives[0].particles(ours, variable.name, material, mine.id)
