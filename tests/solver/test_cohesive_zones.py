@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.spatial.transform import Rotation
 
 from solver.cohesive_zones import (
     STEPS_TO_RELEASE,
     CohesiveZone,
     CohesiveZones,
+    ZoneState,
     has_failed,
     read_zones,
     tractions,
@@ -18,6 +20,7 @@ from solver.creation import ParticleIds
 from solver.declare import fields
 from solver.grid import Grid, Patch
 from solver.nodal import new_nodal_fields
+from solver.particles import new_arrays
 
 LAW = CohesiveZone(2e-3, 3e-3, 240.0, 150.0, "zones.txt")
 GRID = Grid(
@@ -187,6 +190,58 @@ def test_zones_that_leave_the_domain_are_gone(tmp_path):
     step(zones, nodal, 0.5)
     step(zones, nodal, 0.5)
     assert len(zones.zones.area) == 0
+
+
+def test_a_body_that_is_gone_is_not_pulled_and_does_not_pull(tmp_path):
+    zones, nodal = scene(tmp_path)
+    nodal.velocity[1] = [0.0, 0.1, 0.0]
+    step(zones, nodal, 0.01)
+    assert zones.zones.force[0, 1] > 0.0
+    nodal.mass[1] = 1e-200
+    step(zones, nodal, 0.01)
+    assert np.abs(nodal.external_force).max() == 0.0
+
+
+def test_zones_go_round_where_the_domain_repeats():
+    """In a domain of 2 x 2 x 1 that repeats in x, a zone in the last cell acts on the first node too."""
+    grid = Grid((0.0, -1.0, 0.0), (0.5, 0.5, 0.5), (4, 4, 2), (0, 1, 1), (1, 0, 0), GRID.patches)
+    nodal = new_nodal_fields(grid, 2)
+    nodal.mass[:] = 1.0
+    nodal.velocity[1] = [1.0, 0.0, 0.0]
+    state = new_arrays(ZoneState, 1)
+    state.position[:], state.area[:], state.top[:] = [1.9, 0.1, 0.2], 0.01, 1
+    state.normal[:], state.tangent[:] = [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]
+    zones = CohesiveZones(LAW, state, grid)
+    step(zones, nodal, 1e-3)
+    force = zones.zones.force[0]
+    np.testing.assert_allclose(nodal.external_force[0].sum(axis=0), force, rtol=1e-12)
+    assert (
+        nodal.external_force[0, grid.flat(0, 2, 0), 0]
+        > 0.5 * nodal.external_force[0, grid.flat(3, 2, 0), 0]
+        > 0
+    )
+    assert nodal.external_force[0, grid.flat(4, 2, 0), 0] == 0.0
+    nodal.velocity[:] = [1.0, 0.0, 0.0]
+    step(zones, nodal, 0.2)
+    assert zones.zones.position[0, 0] == pytest.approx(0.1005)
+
+
+@pytest.mark.parametrize("spin", [[0.0, 0.0, 2.0], [1.0, -0.5, 0.7]])
+def test_a_zone_turns_rigidly_with_its_bodies(tmp_path, spin):
+    """In a rigid rotation normal, tangent and separation turn by its angle, and tractions stay what they were."""
+    nodal = new_nodal_fields(GRID, 2)
+    nodal.mass[:] = 1.5
+    zones = CohesiveZones(LAW._replace(do_rotation=True), zones_of(tmp_path, ROW), GRID)
+    nodal.velocity[1] = [1.0, 2.0, -1.0]
+    step(zones, nodal, 1e-3)
+    before = zones.zones
+    nodal.velocity[:] = np.cross(spin, GRID.node_positions())
+    for _ in range(50):
+        step(zones, nodal, 1e-2)
+    Q = Rotation.from_rotvec(0.5 * np.array(spin)).as_matrix()
+    for name in ("normal", "tangent", "separation", "force"):
+        turned = getattr(before, name) @ Q.T
+        np.testing.assert_allclose(getattr(zones.zones, name), turned, atol=1e-9 * np.abs(turned).max())
 
 
 # ---- files -------------------------------------------------------------------------------------------------
