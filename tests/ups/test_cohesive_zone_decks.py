@@ -175,8 +175,10 @@ def test_lint_sees_zones_that_are_switched_off(tmp_path: Path) -> None:
         d for d in lint_deck(write(tmp_path, text, "off.ups")).diagnostics if "cohesive_zone" in d.message
     ]
     assert [(d.code, d.severity.name) for d in found] == [("UPS425", "WARNING")]
-    on = glued(tmp_path, "[0,0,0]", "[0,0,0]")
-    assert not [d for d in lint_deck(on).diagnostics if "cohesive" in d.message]
+    on = glued(tmp_path, "[0,0,0]", "[0,0,0]", saves=('cz.force" material="2', 'g.mass" material="3'))
+    assert [d.message for d in lint_deck(on).diagnostics] == []
+    beyond = glued(tmp_path, "[0,0,0]", "[0,0,0]", saves=('cz.force" material="4',))
+    assert "names material 4" in " ".join(d.message for d in lint_deck(beyond).diagnostics)
 
 
 def test_a_turning_zone_turns_with_its_bodies(tmp_path: Path) -> None:

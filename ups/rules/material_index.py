@@ -51,7 +51,8 @@ class MaterialIndex(Rule):
         for save in deck.all("DataArchiver/save"):
             chosen = save.attributes.get("material")
             if chosen is not None:
-                yield from self._check_text(chosen, "material", every + 1, allowed=(-1,), ranges=True)
+                count = every + deck.zone_count + 1
+                yield from self._check_text(chosen, "material", count, allowed=(-1,), ranges=True)
 
     def _check(
         self, element: Element, count: int, allowed: tuple[int, ...] = (), severe: bool = True

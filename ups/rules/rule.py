@@ -71,6 +71,12 @@ class DeckView:
         """How many materials of particles a run has; copies that take over failed particles count too."""
         return len(self.particle_materials) * (2 if self.switch("MPM/create_new_particles") else 1)
 
+    @property
+    def zone_count(self) -> int:
+        """How many materials of cohesive zones an archive has; they come after the others."""
+        used = self.switch("MPM/use_cohesive_zones")
+        return len(list(self.all("MaterialProperties/MPM/cohesive_zone"))) if used else 0
+
     @cached_property
     def gas_materials(self) -> list[Element]:
         """The materials of gas dynamics, in the order of their indices."""
