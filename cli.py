@@ -514,14 +514,31 @@ def _step(context: click.Context, option: click.Parameter, given: str) -> int:
         raise click.BadParameter(f"{given!r} is neither the number of a step nor 'last'") from None
 
 
+def _of_pictures(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options that say what a picture shows."""
+    for option in reversed(
+        (
+            click.option("--variable", metavar="LABEL", help="What to show; the stress, or what there is."),
+            click.option(
+                "--step", default="last", callback=_step, metavar="STEP", help="Time step; the last."
+            ),
+            click.option("--slice", "plane", callback=_plane, metavar="z=0", help="Cut across an axis."),
+            click.option(
+                "--material", "materials", multiple=True, type=int, metavar="INDEX", help="Only these."
+            ),
+            click.option("--level", type=int, default=0, metavar="INDEX", help="Of a grid variable; 0."),
+            click.option(
+                "--range", "limits", type=float, nargs=2, metavar="LOW HIGH", help="Of the colours."
+            ),
+        )
+    ):
+        command = option(command)
+    return command
+
+
 @main.command()
 @click.argument("archive", type=click.Path())
-@click.option("--variable", metavar="LABEL", help="What to show; by default the stress, or what there is.")
-@click.option("--step", default="last", callback=_step, metavar="STEP", help="Time step; the last.")
-@click.option("--slice", "plane", callback=_plane, metavar="z=0", help="Cut across an axis.")
-@click.option("--material", "materials", multiple=True, type=int, metavar="INDEX", help="Only these.")
-@click.option("--level", type=int, default=0, metavar="INDEX", help="Level of a grid variable; 0.")
-@click.option("--range", "limits", type=float, nargs=2, metavar="LOW HIGH", help="Ends of the colour bar.")
+@_of_pictures
 @click.option("-o", "--output", type=click.Path(), help="The picture, such as x.png.")
 @click.option("--movie", type=click.Path(), help="A movie of all time steps, x.gif or x.mp4.")
 @click.option("--fps", type=click.FloatRange(min=0.1), default=10.0, help="Frames of it a second; 10.")
@@ -557,6 +574,36 @@ def plot(
                 click.echo(
                     make_movie(archive, movie, variable, frames_per_second=fps, progress=progress, **chosen)
                 )
+
+
+@main.command()
+@click.argument("archive", type=click.Path())
+@_of_pictures
+@click.option("--page", is_flag=True, help="A web page even where there is a display for a window.")
+@click.option("--port", type=click.IntRange(0, 65535), default=8080, help="Where it is served; 8080.")
+@click.option("--fps", type=click.FloatRange(min=0.1), default=5.0, help="Steps a second when it plays; 5.")
+def view(archive: str, page: bool, port: int, fps: float, variable: str | None, **options: Any) -> None:
+    """Look at ARCHIVE in a window, or on a web page of this machine where there is no display.
+
+    Time steps, variable, material and colours are chosen there. A run may still be writing the archive.
+    """
+    with _orderly():
+        from pathlib import Path
+
+        from ups.pictures import page as web
+        from ups.pictures import window
+        from ups.pictures.viewer import Viewer
+
+        options["materials"] = options["materials"] or None
+        make = partial(Viewer, archive, variable=variable, **options)
+        if page or not window.has_display():
+            web.serve(make, port, frames_per_second=fps, announce=_say_address)
+        else:
+            window.show(make, title=Path(archive).name, frames_per_second=fps)
+
+
+def _say_address(address: str) -> None:
+    click.echo(f"{address} shows the archive; Ctrl-C ends it")
 
 
 @main.command()

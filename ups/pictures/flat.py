@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from ups.archive.variables import NODE
 from ups.inspect.extract import interpolate
-from ups.pictures.view import Range, View, grid_field, particle_frame
+from ups.pictures.view import Range, View, grid_field, particle_frame, plane_corners
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -73,18 +74,53 @@ def _size(view: View, shown: Range) -> tuple[float, float]:
     return min(max(height * across / up, 2.5) + _BESIDE, _WIDTH), height + 1.2
 
 
+@dataclass(frozen=True)
+class Profile:
+    """Numbers along an axis.
+
+    Attributes
+    ----------
+    name
+        The material, or nothing where there is only one.
+    places, values
+        Coordinates and numbers, shape (n,).
+    joined
+        Whether they are those of a grid, between which a line may be drawn.
+    """
+
+    name: str
+    places: np.ndarray
+    values: np.ndarray
+    joined: bool
+
+
+def profiles(view: View, step: int) -> list[Profile]:
+    """Numbers that a view along one axis shows, for particles one profile a material."""
+    (axis,) = view.axes
+    if not view.named.source.is_particle:
+        (places,), values = _on_axes(view, step)
+        return [Profile("", places, values, joined=True)]
+    frame = particle_frame(view, step)
+    found = []
+    for material in view.materials:
+        of_it = frame.materials == material
+        name = f"material {material}" if len(view.materials) > 1 else ""
+        found.append(Profile(name, frame.positions[of_it, axis], frame.values[of_it], joined=False))
+    return found
+
+
 def _draw_profile(view: View, step: int, axes: Any, shown: Range) -> None:
     (axis,) = view.axes
-    if view.named.source.is_particle:
-        frame = particle_frame(view, step)
-        axes.plot(frame.positions[:, axis], frame.values, ".", markersize=4)
-    else:
-        places, values = _on_axes(view, step)
-        axes.plot(places[0], values, "o-", markersize=3, linewidth=1)
+    for profile in profiles(view, step):
+        line = "o-" if profile.joined else "o"
+        axes.plot(profile.places, profile.values, line, markersize=3, linewidth=1, label=profile.name)
+    if len(axes.lines) > 1:
+        axes.legend(fontsize=8)
     least, most = shown.values
     margin = 0.05 * (most - least)
     axes.set(xlim=(shown.low[axis], shown.high[axis]), ylim=(least - margin, most + margin))
     axes.set(xlabel=f"{'xyz'[axis]} [m]", ylabel=view.label)
+    axes.ticklabel_format(useMathText=True)
     axes.grid(alpha=0.3)
 
 
@@ -99,7 +135,9 @@ def _draw_plane(view: View, step: int, figure: Figure, axes: Any, shown: Range) 
         (x, y), values = _on_axes(view, step)
         shading = "gouraud" if view.named.source.container == NODE else "nearest"
         drawn = axes.pcolormesh(x, y, values.T, shading=shading, clim=shown.values)
-    figure.colorbar(drawn, ax=axes, label=view.label, shrink=0.9)
+    axes.ticklabel_format(useMathText=True)
+    bar = figure.colorbar(drawn, ax=axes, label=view.label, fraction=0.06, aspect=25, pad=0.02)
+    bar.ax.ticklabel_format(useMathText=True)
 
 
 def _particles(view: View, step: int, axes: Any, shown: Range) -> Any:
@@ -113,11 +151,7 @@ def _particles(view: View, step: int, axes: Any, shown: Range) -> Any:
         dots = axes.scatter(*places.T, c=values, s=0.5, marker=",", linewidths=0)
         dots.set_clim(*shown.values)
         return dots
-    first, second = (frame.edges[order][:, plane, axis] / 2.0 for axis in plane)
-    corners = np.stack(
-        [places - first - second, places + first - second, places + first + second, places - first + second],
-        1,
-    )
+    corners = plane_corners(frame, plane)[order][..., plane]
     boxes = PolyCollection(list(corners), array=values, edgecolors="face", linewidths=0.6)
     boxes.set_clim(*shown.values)
     return axes.add_collection(boxes)

@@ -1,9 +1,10 @@
-"""Pictures of bodies in space, rendered by pyvista without a display."""
+"""Views rendered by pyvista: bodies in space for `ups plot`, and any view where one may turn it and look closer."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,74 +12,207 @@ import numpy as np
 
 from ups.archive.variables import NODE
 from ups.convert.glyphs import box_corners
-from ups.pictures.view import Range, View, grid_field, particle_frame
+from ups.pictures.view import Range, View, grid_field, particle_frame, plane_corners
 
-_SIZE = (1000, 800)
+SIZE = (1000, 800)
 """Pixels."""
 
-_MOST_BOXES = 100_000
+_MOST_BOXES = 200_000
 """Particles beyond this many are drawn as points."""
 
 _HEXAHEDRON = 12
 """VTK's number of this cell type."""
 
+_LOOKS: dict[tuple[int, ...], str] = {(0, 1): "xy", (0, 2): "xz", (1, 2): "yz"}
+"""Where the camera of a plane stands, by the axes across and up."""
 
-@contextmanager
-def rendered(view: View, step: int, shown: Range) -> Iterator[Any]:
-    """Render a view in space; gives the pyvista plotter while the picture can be taken.
+_MATERIAL_COLOURS = ("tab:blue", "tab:orange", "tab:green", "tab:red", "tab:purple", "tab:brown")
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where in a picture what is shown lies, so that bar and controls have room.
+
+    Attributes
+    ----------
+    zoom
+        Its size, 1 for as large as fits.
+    shift
+        Where the middle of the picture lies from it, in halves of the picture to the right and up.
+    chart
+        Left and lower ends, width and height of a chart, in shares of the picture.
+    """
+
+    zoom: float = 0.85
+    shift: tuple[float, float] = (0.1, 0.0)
+    chart: tuple[float, float, float, float] = (0.06, 0.06, 0.88, 0.84)
+
+
+class Scene:
+    """A view in a pyvista plotter; drawn again with another step or variable, it keeps the camera.
+
+    Bodies in space are seen from a corner, planes from the front; along one axis it is a chart.
 
     Parameters
     ----------
-    view
-        What is shown.
-    step
-        The time step.
-    shown
-        What the colour bar and the box around the picture cover.
+    plotter
+        Where it is drawn, beside what others have put there.
+    frame
+        Where in it.
     """
-    pyvista = _pyvista()
-    plotter = pyvista.Plotter(off_screen=True, window_size=_SIZE)
-    try:
-        plotter.set_background("white")
-        bar = {
-            "title": f"{view.label}\n",
-            "color": "black",
-            "vertical": True,
-            "position_x": 0.86,
-            "position_y": 0.15,
-            "height": 0.7,
-            "width": 0.06,
-            "title_font_size": 18,
-            "label_font_size": 16,
-            "fmt": "%.4g",
+
+    def __init__(self, plotter: Any, frame: Frame | None = None) -> None:
+        self.plotter = plotter
+        self._frame = frame or Frame()
+        self._bar = ""
+        self._chart: Any = None
+        self._seen_from: tuple[object, ...] = ()
+
+    def draw(self, view: View, step: int, shown: Range) -> None:
+        """Draw a view at a time step.
+
+        Parameters
+        ----------
+        view
+            What is shown.
+        step
+            The time step.
+        shown
+            What the colour bar, or the vertical axis of a chart, and the axes around the picture cover.
+        """
+        self._clear()
+        text = {"font_size": 10, "color": "black", "name": "title", "viewport": True}
+        self.plotter.add_text(view.title(step), position=(0.01, 0.955), **text)
+        if len(view.axes) == 1:
+            self._draw_chart(view, step, shown)
+            return
+        mesh = _particle_mesh(view, step) if view.named.source.is_particle else _cut_mesh(view, step)
+        if mesh.n_points:
+            self._add(mesh, view, shown)
+        self._draw_axes(view, shown)
+        self._aim(view, shown)
+
+    def reset_camera(self) -> None:
+        """Look again from where such views are first seen, from the next drawing on."""
+        self._seen_from = ()
+
+    def _add(self, mesh: Any, view: View, shown: Range) -> None:
+        flat, dots = len(view.axes) == 2, mesh.n_cells == mesh.n_points
+        self._bar = view.label.replace(":", "\n") + "\n"
+        options: dict[str, Any] = {
+            "scalars": "shown",
+            "clim": shown.values,
+            "cmap": "viridis",
+            "ambient": 1.0 if flat else 0.4,
+            "diffuse": 0.0 if flat else 0.7,
+            "reset_camera": False,
         }
-        options = {"scalars": "shown", "clim": shown.values, "cmap": "viridis", "scalar_bar_args": bar}
-        if view.named.source.is_particle:
-            _add_particles(pyvista, plotter, view, step, options)
-        else:
-            _add_slices(pyvista, plotter, view, step, options)
-        bounds = [end for pair in zip(shown.low, shown.high, strict=True) for end in pair]
-        plotter.add_mesh(pyvista.Box(bounds), style="wireframe", color="grey", line_width=1)
-        plotter.show_bounds(
-            bounds=bounds,
-            color="black",
-            font_size=10,
+        if dots:
+            options |= {"point_size": _dot_size(view, shown), "render_points_as_spheres": not flat}
+        self.plotter.add_mesh(mesh, name="shown", scalar_bar_args={**_BAR, "title": self._bar}, **options)
+        if flat and not dots:  # closes the seams between boxes
+            options |= {"style": "wireframe", "line_width": 1.5, "show_scalar_bar": False}
+            self.plotter.add_mesh(mesh, name="outlines", **options)
+
+    def _clear(self) -> None:
+        for name in ("shown", "outlines"):
+            self.plotter.remove_actor(name, render=False)
+        if self._bar in self.plotter.scalar_bars:
+            self.plotter.remove_scalar_bar(self._bar, render=False)
+        self.plotter.remove_bounds_axes()
+        if self._chart is not None:
+            self.plotter.remove_chart(self._chart)
+            self._chart = None
+
+    def _draw_axes(self, view: View, shown: Range) -> None:
+        options = {f"{letter}title": f"{letter} [m]" for letter in "xyz"} | {
+            f"show_{letter}axis": axis in view.axes for axis, letter in enumerate("xyz")
+        }
+        drawn = self.plotter.show_bounds(
+            bounds=_flattened(shown),
+            color="dimgray",
             location="outer",
             ticks="outside",
-            xtitle="x [m]",
-            ytitle="y [m]",
-            ztitle="z [m]",
-            n_xlabels=3,
-            n_ylabels=3,
-            n_zlabels=3,
-            fmt="%.3g",
+            font_size=15,
+            fmt="%.4g",
+            **options,
         )
-        plotter.add_text(view.title(step), position="upper_left", font_size=10, color="black")
-        plotter.camera_position = "iso"
-        plotter.camera.zoom(0.85)
+        for axis in range(3):
+            drawn.SetAxisLabels(axis, None)  # pyvista's divide the axis evenly, VTK's own are round numbers
+
+    def _aim(self, view: View, shown: Range) -> None:
+        """Look at the box around what is shown, from where such views are first seen."""
+        seen_from = (view.axes, view.plane)
+        if seen_from == self._seen_from:
+            return
+        self._seen_from = seen_from
+        self.plotter.camera.parallel_projection = len(view.axes) == 2
+        self.plotter.camera_position = _LOOKS.get(view.axes, "iso")
+        self.plotter.reset_camera(bounds=_flattened(shown))
+        self.plotter.camera.zoom(self._frame.zoom)
+        self.plotter.camera.SetWindowCenter(*self._frame.shift)
+
+    def _draw_chart(self, view: View, step: int, shown: Range) -> None:
+        from ups.pictures.flat import profiles
+
+        (axis,) = view.axes
+        chart = self._chart = _pyvista().Chart2D(
+            size=self._frame.chart[2:],
+            loc=self._frame.chart[:2],
+            x_label=f"{'xyz'[axis]} [m]",
+            y_label=view.label,
+        )
+        shown_profiles = profiles(view, step)
+        for number, profile in enumerate(shown_profiles):
+            colour = _MATERIAL_COLOURS[number % len(_MATERIAL_COLOURS)]
+            chart.scatter(profile.places, profile.values, color=colour, size=6, label=profile.name)
+            if profile.joined:
+                chart.line(profile.places, profile.values, color=colour)
+        least, most = shown.values
+        margin = 0.05 * (most - least)
+        chart.x_range = [shown.low[axis], shown.high[axis]]
+        chart.y_range = [least - margin, most + margin]
+        for drawn in (chart.x_axis, chart.y_axis):
+            drawn.label_size, drawn.tick_label_size = 16, 14
+        chart.legend_visible = any(profile.name for profile in shown_profiles)
+        self.plotter.add_chart(chart)
+
+
+def _flattened(shown: Range) -> list[float]:
+    """Ends along each axis, as pyvista takes them."""
+    return [end for pair in zip(shown.low, shown.high, strict=True) for end in pair]
+
+
+_BAR = {
+    "color": "black",
+    "vertical": True,
+    "position_x": 0.84,
+    "position_y": 0.15,
+    "height": 0.7,
+    "width": 0.06,
+    "title_font_size": 18,
+    "label_font_size": 16,
+    "fmt": "%.4g",
+}
+
+
+@contextmanager
+def rendered(view: View, step: int, shown: Range) -> Iterator[Any]:
+    """Render a view without a display; gives the pyvista plotter while the picture can be taken."""
+    plotter = new_plotter(off_screen=True)
+    try:
+        Scene(plotter).draw(view, step, shown)
         yield plotter
     finally:
         plotter.close()
+
+
+def new_plotter(*, off_screen: bool, title: str = "") -> Any:
+    """Return an empty plotter with what all pictures share."""
+    plotter = _pyvista().Plotter(off_screen=off_screen, window_size=SIZE, title=title or None)
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("msaa")
+    return plotter
 
 
 def pixels(plotter: Any) -> np.ndarray:
@@ -102,30 +236,41 @@ def _pyvista() -> Any:
     return pyvista
 
 
-def _add_particles(pyvista: Any, plotter: Any, view: View, step: int, options: dict[str, Any]) -> None:
-    frame = particle_frame(view, step)
+def _dot_size(view: View, shown: Range) -> float:
+    """Pixels of a dot as wide as a particle, which is half a cell, where everything shown is in the picture."""
+    level = view.archive.grid(-1).levels[view.level]
+    extent = float(np.linalg.norm(np.subtract(shown.high, shown.low)))
+    return max(2.0, 0.6 * max(level.spacing) / extent * SIZE[1])
+
+
+def _particle_mesh(view: View, step: int) -> Any:
+    """Particles as the boxes they fill, or their faces in a plane, or as points where they are many."""
+    pyvista, frame = _pyvista(), particle_frame(view, step)
     count = len(frame.positions)
-    if count == 0:
-        return
     if count > _MOST_BOXES:
         mesh = pyvista.PolyData(frame.positions)
         mesh["shown"] = frame.values
-        plotter.add_mesh(mesh, style="points", point_size=2.0, **options)
-        return
+        return mesh
+    if len(view.axes) == 2:
+        corners = plane_corners(frame, view.axes).reshape(-1, 3)
+        faces = np.column_stack([np.full(count, 4), np.arange(4 * count).reshape(count, 4)]).ravel()
+        mesh = pyvista.PolyData(corners, faces)
+        mesh.cell_data["shown"] = frame.values
+        return mesh
     corners = box_corners(frame.positions, frame.edges).reshape(-1, 3)
     cells = np.column_stack([np.full(count, 8), np.arange(8 * count).reshape(count, 8)]).ravel()
     mesh = pyvista.UnstructuredGrid(cells, np.full(count, _HEXAHEDRON, dtype=np.uint8), corners)
     mesh.cell_data["shown"] = frame.values
-    plotter.add_mesh(mesh, ambient=0.4, **options)
+    return mesh
 
 
-def _add_slices(pyvista: Any, plotter: Any, view: View, step: int, options: dict[str, Any]) -> None:
-    """Three planes through the middle of the grid."""
+def _cut_mesh(view: View, step: int) -> Any:
+    """A grid variable on the plane of the view, or on three planes through the middle of the grid."""
     found = grid_field(view, step)
     box = found.interior
     values = found.values[box.within(found.origin)]
     on_nodes = found.variable.container == NODE
-    image = pyvista.ImageData(
+    image = _pyvista().ImageData(
         dimensions=tuple(n if on_nodes else n + 1 for n in values.shape),
         spacing=found.level.spacing,
         origin=tuple(
@@ -134,4 +279,10 @@ def _add_slices(pyvista: Any, plotter: Any, view: View, step: int, options: dict
     )
     data = image.point_data if on_nodes else image.cell_data
     data["shown"] = values.ravel(order="F")
-    plotter.add_mesh(image.slice_orthogonal().combine(), ambient=0.7, diffuse=0.3, **options)
+    if len(view.axes) == 3:
+        return image.slice_orthogonal().combine()
+    (across,) = set(range(3)) - set(view.axes)
+    place = list(image.center)
+    if view.plane is not None:
+        place[view.plane.axis] = view.plane.position
+    return image.slice(normal="xyz"[across], origin=place)

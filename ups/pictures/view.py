@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
 from ups.archive import Archive, ArchiveError, GridField, Level, Variable
 from ups.archive.layout import FloatVector
-from ups.archive.measures import Named
+from ups.archive.measures import Named, measure_of, measures_of
 from ups.archive.units import plain_name, with_unit
-from ups.archive.variables import NODE
+from ups.archive.variables import ELEMENTS, NODE
 from ups.convert.glyphs import particle_edges, positions_of
 
 _PREFERRED = (
@@ -25,6 +26,9 @@ _PREFERRED = (
     "g.velocity:magnitude",
 )
 """What is shown where nothing is asked for: the first that the archive has."""
+
+_ROUNDING = 1e-9
+"""Of a stress, what is no more than noise."""
 
 _SCALAR = {"Vector": "magnitude", "Point": "magnitude", "Matrix3": "norm"}
 _SCALAR_OF = {"p.stress": "vonMises", "g.stressFS": "vonMises", "p.deformationMeasure": "equivalentStrain"}
@@ -131,7 +135,7 @@ class View:
             advice = f"its materials are: {', '.join(map(str, stored))}"
             raise ArchiveError(archive.path, f"{label} is not stored for material {absent[0]}", advice=advice)
         if named.source.is_grid and materials is None:
-            together = named.source.container == NODE and _together(archive, step, stored)
+            together = named.source.container == NODE and is_with_all(archive, step, stored)
             wanted = (stored[-1] if together else stored[0],)
         levels = archive.grid(step).levels
         if not 0 <= level < len(levels):
@@ -152,11 +156,16 @@ class View:
         timestep = self.archive.timestep(step)
         name = self.archive.index.title or self.archive.path.resolve().name
         shown = f"{name}, time {timestep.time:.6g} s (step {timestep.step})"
-        if len(self.materials) < len(self.archive.materials(step, self.named.source.name)):
+        stored = self.archive.materials(step, self.named.source.name)
+        if len(self.materials) < len(stored) and not self._shows_all_together(step, stored):
             shown += f", material {', '.join(map(str, self.materials))}"
         if self.plane is not None:
             shown += f", slice {'xyz'[self.plane.axis]} = {self.plane.position:.6g} m"
         return shown
+
+    def _shows_all_together(self, step: int, stored: Sequence[int]) -> bool:
+        together = self.named.source.container == NODE and is_with_all(self.archive, step, stored)
+        return together and self.materials == (stored[-1],)
 
 
 @dataclass(frozen=True)
@@ -171,11 +180,14 @@ class ParticleFrame:
         Edge vectors of the boxes that they fill, as columns, shape (n, 3, 3).
     values
         Shape (n,).
+    materials
+        Material of each, shape (n,).
     """
 
     positions: np.ndarray
     edges: np.ndarray
     values: np.ndarray
+    materials: np.ndarray
 
 
 def particle_frame(view: View, step: int) -> ParticleFrame:
@@ -190,9 +202,16 @@ def particle_frame(view: View, step: int) -> ParticleFrame:
             axis = view.plane.axis
             near = np.abs(positions[:, axis] - view.plane.position) <= level.spacing[axis] / 2.0
             positions, edges, values = positions[near], edges[near], values[near]
-        parts.append((positions, edges, values))
-    positions, edges, values = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
-    return ParticleFrame(positions, edges, values)
+        parts.append((positions, edges, values, np.full(len(values), material)))
+    return ParticleFrame(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+
+
+def plane_corners(frame: ParticleFrame, axes: Sequence[int]) -> np.ndarray:
+    """Corners of the faces that particles show to who looks at a plane, in order, shape (n, 4, 3)."""
+    first, second = (frame.edges[:, :, axis] / 2.0 for axis in axes)
+    places = frame.positions
+    corners = [places - first - second, places + first - second, places + first + second]
+    return np.stack([*corners, places - first + second], axis=1)
 
 
 def grid_field(view: View, step: int) -> GridField:
@@ -216,13 +235,21 @@ class Range:
     low: FloatVector
     high: FloatVector
 
+    def joined(self, other: Range) -> Range:
+        """Return the smallest range that covers both."""
+        low, high = (
+            tuple(np.array(pick([ours, theirs], axis=0)).tolist())
+            for pick, ours, theirs in ((np.min, self.low, other.low), (np.max, self.high, other.high))
+        )
+        least, most = zip(self.values, other.values, strict=True)
+        return Range((min(least), max(most)), low, high)
+
 
 def range_of(view: View, steps: Sequence[int], limits: tuple[float, float] | None = None) -> Range:
     """Range of a picture, or of all frames of a movie.
 
     The numbers are the finite ones that are shown, a little more where they hardly differ, so that
-    rounding is not drawn as a pattern. The box is the grid or, where particles fill less than a third of
-    it along each axis, the particles.
+    rounding is not drawn as a pattern. The box is that of the particles with a margin, or of the grid.
 
     Parameters
     ----------
@@ -250,9 +277,8 @@ def range_of(view: View, steps: Sequence[int], limits: tuple[float, float] | Non
         finite = values[np.isfinite(values)]
         if finite.size:
             ends.append((float(finite.min()), float(finite.max())))
-    shown = list(view.axes)
-    if (high >= low).all() and ((high - low)[shown] < (grid_high - grid_low)[shown] / 3.0).all():
-        margin = 0.2 * (high - low)[shown].max() + max(level.spacing)
+    if (high >= low).all():
+        margin = max(*level.spacing, 0.03 * (high - low)[list(view.axes)].max())
         low, high = np.maximum(grid_low, low - margin), np.minimum(grid_high, high + margin)
     else:
         low, high = grid_low, grid_high
@@ -267,19 +293,56 @@ def _widened(ends: Sequence[tuple[float, float]]) -> tuple[float, float]:
     low, high = min(end[0] for end in ends), max(end[1] for end in ends)
     size = max(abs(low), abs(high))
     if high - low > 1e-6 * size:
-        return low, high
+        return (0.0 if abs(low) < 1e-12 * size else low, 0.0 if abs(high) < 1e-12 * size else high)
     return (low - 0.01 * size, high + 0.01 * size) if size else (0.0, 1.0)
+
+
+def usual_names(archive: Archive, step: int) -> list[str]:
+    """Names of what a picture can show of a time step; vectors and tensors by the measure that stands for them."""
+    found = []
+    for variable in _drawable(archive, step):
+        with suppress(ArchiveError):  # where only a component is a number
+            found.append(_scalar(archive, Named(variable)).declaration.name)
+    return found
+
+
+def measure_names(archive: Archive, step: int) -> list[str]:
+    """Names of all other numbers that a picture can show: measures and components of vectors and tensors."""
+    usual = usual_names(archive, step)
+    names = [
+        f"{variable.name}:{measure}"
+        for variable in _drawable(archive, step)
+        if variable.element_type.shape
+        for measure in measures_of(variable)
+        if not ELEMENTS[measure_of(variable, measure).result].shape
+    ]
+    return [name for name in names if name not in usual]
+
+
+def _drawable(archive: Archive, step: int) -> list[Variable]:
+    """Return what has a place, apart from the places and numbers of the particles."""
+    skipped = (archive.index.particle_position, "p.particleID")
+    stored = [archive.variables[label] for label in archive.labels(step) if label not in skipped]
+    return [variable for variable in stored if variable.is_particle or variable.is_grid]
 
 
 def _default(archive: Archive, step: int) -> Named:
     stored = archive.labels(step)
     for name in _PREFERRED:
         if name.partition(":")[0] in stored:
-            return archive.find(name)
+            return archive.find("p.stress:pressure" if _is_fluid(archive, step, name) else name)
     shown = [v for v in archive.variables.values() if v.name in stored and (v.is_particle or v.is_grid)]
     if not shown:
         raise ArchiveError(archive.path, "there is no particle or grid variable to show")
     return _scalar(archive, Named(shown[0]))
+
+
+def _is_fluid(archive: Archive, step: int, name: str) -> bool:
+    """Whether a von Mises stress is only the rounding of stresses that are pressures."""
+    if name != "p.stress:vonMises":
+        return False
+    shear, whole = (archive.particles(step, f"p.stress:{measure}") for measure in ("vonMises", "norm"))
+    return bool(np.nanmax(shear, initial=0.0) < _ROUNDING * np.nanmax(whole, initial=0.0))
 
 
 def _scalar(archive: Archive, named: Named) -> Named:
@@ -301,7 +364,7 @@ def _scalar(archive: Archive, named: Named) -> Named:
     return archive.find(f"{declared.name}:{measure}")
 
 
-def _together(archive: Archive, step: int, stored: Sequence[int]) -> bool:
+def is_with_all(archive: Archive, step: int, stored: Sequence[int]) -> bool:
     """Whether the last material of a nodal variable stands for all together, one more than have particles."""
     position = archive.index.particle_position
     own = archive.materials(step, position) if position in archive.labels(step) else []
