@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ups.deck import Deck
     from ups.diagnostics import DeckError
     from ups.result import Result
+    from ups.run import Observer
 
 FAULT, INTERRUPTED = 1, 130
 """Exit statuses: the deck or the data is at fault; Ctrl-C."""
@@ -102,6 +103,13 @@ def _overrides(
     "--set", "overrides", multiple=True, metavar="PATH=VALUE", callback=_overrides, help="Set a tag."
 )
 @click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Use N cores; by default all.")
+@click.option(
+    "--live",
+    is_flag=False,
+    flag_value="",
+    metavar="[VARIABLE]",
+    help="Show a variable at each output: a window, or ARCHIVE.png where there is no display.",
+)
 @click.option("-q", "--quiet", is_flag=True, help="Print problems only.")
 @click.option("-v", "--verbose", is_flag=True, help="Print notes too, and details of internal errors.")
 def run(
@@ -112,6 +120,7 @@ def run(
     max_steps: int | None,
     overrides: list[tuple[str, str]],
     threads: int | None,
+    live: str | None,
     quiet: bool,
     verbose: bool,
 ) -> None:
@@ -119,6 +128,8 @@ def run(
 
     Without --output a restart continues the archive in place.
     """
+    if deck is None and restart is None and live:
+        deck, live = live, ""  # `ups run --live DECK`
     if (deck is None) == (restart is None):
         raise click.UsageError("give either a DECK or --restart ARCHIVE")
     if step is not None and restart is None:
@@ -137,13 +148,24 @@ def run(
                 loaded.require()  # raises, before anything heavy is imported
             go = partial(run_deck, loaded)
         interrupts = Interrupts()
+        observers: list[Observer] = [interrupts] if quiet else [interrupts, Progress()]
+        show_warnings = checked = _printer_of_warnings(verbose, quiet)
+        if live is not None:
+            from ups.pictures.live import Live, check_variable
+            from ups.pictures.window import has_display
+
+            def checked(deck: Deck) -> None:
+                check_variable(deck, live)
+                show_warnings(deck)
+
+            observers.append(Live(live, window=has_display(), stream=None if quiet else sys.stdout))
         with nullcontext() if quiet else compilation_notice():
             result = go(
                 output=output,
                 max_steps=max_steps,
                 threads=threads,
-                observers=(interrupts,) if quiet else (interrupts, Progress()),
-                checked=_printer_of_warnings(verbose, quiet),
+                observers=observers,
+                checked=checked,
             )
         if interrupts.received:
             click.echo(f"go on with: ups run --restart {result.directory}", err=True)

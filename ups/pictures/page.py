@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import socket
 from collections.abc import Callable
 from typing import Any
@@ -50,7 +51,7 @@ def _trame_server(viewer: Viewer) -> Any:
     except ImportError:
         raise ArchiveError(
             viewer.view.archive.path,
-            "there is no display for a window, and trame, which makes a web page, is not installed",
+            "trame, which makes the web page, is not installed",
             advice="pip install 'ups-mpm[view]', or make pictures with ups plot",
         ) from None
     return get_server(client_type="vue3")
@@ -81,11 +82,11 @@ class _Page:
         state.trame__title = viewer.view.archive.path.resolve().name
         state.playing = False
         state.low_typed = state.high_typed = ""
+        self._picture = self._lay_out()
         self._redraw()
         state.change("variable")(self._on_variable)
         state.change("material")(self._on_material)
         state.change("position")(self._on_position)
-        self._lay_out()
 
     def start(self, port: int, announce: Callable[[str], None]) -> None:
         """Serve until interrupted."""
@@ -96,12 +97,13 @@ class _Page:
                 self._tasks.append(asyncio.get_event_loop().create_task(loop))
 
         self._server.controller.on_server_ready.add(ready)
-        self._server.cli.set_defaults(host="localhost")
+        os.environ.setdefault("TRAME_ARGS", "--server")  # the command line is not for trame
         self._server.start(
             port=port, host="localhost", open_browser=False, show_connection_info=False, timeout=0
         )
 
-    def _lay_out(self) -> None:
+    def _lay_out(self) -> Any:
+        """Lay the page out; its picture."""
         from trame.ui.vuetify3 import VAppLayout
         from trame.widgets import client
         from trame.widgets import vtk as vtk_widgets
@@ -110,14 +112,19 @@ class _Page:
         with VAppLayout(self._server):
             client.Style("html { overflow: hidden !important; }")
             with v3.VAppBar(height=60):
-                v3.VAutocomplete(v_model=("variable",), items=("variables",), label="variable", **_FIELD)
-                v3.VSelect(v_model=("material",), items=("materials",), label="material", **_FIELD)
+                v3.VAutocomplete(
+                    v_model=("variable",), items=("variables",), label="variable", id="variable", **_FIELD
+                )
+                v3.VSelect(
+                    v_model=("material",), items=("materials",), label="material", id="material", **_FIELD
+                )
                 for end in ("low", "high"):
                     v3.VTextField(
                         v_model=(f"{end}_typed",),
                         placeholder=(end,),
                         persistent_placeholder=True,
                         label=f"{end} end of the colours",
+                        id=end,
                         change=self._on_limits,
                         **_FIELD,
                     )
@@ -126,7 +133,7 @@ class _Page:
                 v3.VBtn("reset view", id="reset", click=self._on_reset)
             with v3.VMain(), v3.VContainer(fluid=True, classes="pa-0 fill-height"):
                 v3.VAlert("{{ trouble }}", v_if=("trouble",), type="warning", density="compact", id="trouble")
-                self._picture = vtk_widgets.VtkRemoteView(
+                picture = vtk_widgets.VtkRemoteView(
                     self._viewer.plotter.render_window, ref="picture", interactive_ratio=1
                 )
             with v3.VFooter(app=True, classes="pa-2"):
@@ -143,6 +150,7 @@ class _Page:
                     density="compact",
                 )
                 v3.VLabel("{{ time }}", id="now", classes="ml-4", style="min-width: 16em")
+        return picture
 
     def _redraw(self) -> None:
         """Draw, and tell the page what is shown and what can be chosen now."""
@@ -164,8 +172,7 @@ class _Page:
                 "high": f"{high:.6g}",
             }
         )
-        if hasattr(self, "_picture"):
-            self._picture.update()
+        self._picture.update()
 
     def _on_variable(self, variable: str, **_state: Any) -> None:
         if variable and variable != self._viewer.variable:
