@@ -23,6 +23,9 @@ _MOST_BOXES = 200_000
 _HEXAHEDRON = 12
 """VTK's number of this cell type."""
 
+_SHORT = 0.35
+"""Share of the longest axis below which an axis has room for numbers at its ends only."""
+
 _LOOKS: dict[tuple[int, ...], str] = {(0, 1): "xy", (0, 2): "xz", (1, 2): "yz"}
 """Where the camera of a plane stands, by the axes across and up."""
 
@@ -125,9 +128,10 @@ class Scene:
             self._chart = None
 
     def _draw_axes(self, view: View, shown: Range) -> None:
-        options = {f"{letter}title": f"{letter} [m]" for letter in "xyz"} | {
-            f"show_{letter}axis": axis in view.axes for axis, letter in enumerate("xyz")
-        }
+        lengths = np.subtract(shown.high, shown.low)
+        options: dict[str, Any] = {"n_xlabels": 2, "n_ylabels": 2, "n_zlabels": 2}
+        for axis, letter in enumerate("xyz"):
+            options |= {f"{letter}title": f"{letter} [m]", f"show_{letter}axis": axis in view.axes}
         drawn = self.plotter.show_bounds(
             bounds=_flattened(shown),
             color="dimgray",
@@ -137,8 +141,8 @@ class Scene:
             fmt="%.4g",
             **options,
         )
-        for axis in range(3):
-            drawn.SetAxisLabels(axis, None)  # pyvista's divide the axis evenly, VTK's own are round numbers
+        for axis in np.flatnonzero(lengths > _SHORT * lengths[list(view.axes)].max()):
+            drawn.SetAxisLabels(int(axis), None)  # VTK's own, which are round numbers, in place of both ends
 
     def _aim(self, view: View, shown: Range) -> None:
         """Look at the box around what is shown, from where such views are first seen."""
@@ -149,6 +153,9 @@ class Scene:
         self.plotter.camera.parallel_projection = len(view.axes) == 2
         self.plotter.camera_position = _LOOKS.get(view.axes, "iso")
         self.plotter.reset_camera(bounds=_flattened(shown))
+        if len(view.axes) == 2:
+            across, up = np.subtract(shown.high, shown.low)[list(view.axes)] / 2.0
+            self.plotter.camera.parallel_scale = max(up, across * SIZE[1] / SIZE[0] / 0.9) / 0.85
         self.plotter.camera.zoom(self._frame.zoom)
         self.plotter.camera.SetWindowCenter(*self._frame.shift)
 
