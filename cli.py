@@ -552,6 +552,14 @@ def _of_pictures(command: Callable[..., None]) -> Callable[..., None]:
             click.option(
                 "--range", "limits", type=float, nargs=2, metavar="LOW HIGH", help="Of the colours."
             ),
+            click.option(
+                "--mirror",
+                "mirrored",
+                multiple=True,
+                type=click.Choice(["x", "y", "z"]),
+                callback=lambda _context, _option, given: ["xyz".index(letter) for letter in given],
+                help="Add the mirror image in the grid's lower face across this axis.",
+            ),
         )
     ):
         command = option(command)
@@ -572,6 +580,7 @@ def plot(
     materials: tuple[int, ...],
     level: int,
     limits: tuple[float, float] | None,
+    mirrored: list[int],
     output: str | None,
     movie: str | None,
     fps: float,
@@ -588,6 +597,7 @@ def plot(
             "materials": materials or None,
             "level": level,
             "limits": limits,
+            "mirrored": mirrored,
         }
         if output is not None:
             click.echo(make_picture(archive, output, variable, step=step, **chosen))

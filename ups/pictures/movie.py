@@ -30,6 +30,7 @@ def movie(
     materials: Sequence[int] | None = None,
     level: int = 0,
     limits: tuple[float, float] | None = None,
+    mirrored: Sequence[int] = (),
     frames_per_second: float = 10.0,
     progress: Progress | None = None,
 ) -> Path:
@@ -37,7 +38,7 @@ def movie(
 
     Parameters
     ----------
-    archive_path, variable, plane, materials, level, limits
+    archive_path, variable, plane, materials, level, limits, mirrored
         As for `ups.pictures.plot.plot`; limits are by default those over all time steps.
     out
         The movie, ``.gif`` or ``.mp4``.
@@ -59,7 +60,7 @@ def movie(
     archive = Archive(archive_path)
     if not archive.timesteps:
         raise ArchiveError(archive.path, "there are no time steps")
-    view = View.choose(archive, variable, materials=materials, level=level, plane=plane)
+    view = View.choose(archive, variable, materials=materials, level=level, plane=plane, mirrored=mirrored)
     label = view.named.source.name
     steps = [t.step for t in archive.timesteps if label in archive.labels(t.step)]
     shown = range_of(view, steps, limits)

@@ -25,6 +25,7 @@ def plot(
     materials: Sequence[int] | None = None,
     level: int = 0,
     limits: tuple[float, float] | None = None,
+    mirrored: Sequence[int] = (),
 ) -> Path:
     """Draw a variable at a time step: a profile along one axis, a plane, or a body in space.
 
@@ -49,6 +50,9 @@ def plot(
         Level of a grid variable.
     limits
         Ends of the colour bar; None for those of what is shown.
+    mirrored
+        Axes (0, 1, 2) across whose lower end of the grid the particles are mirrored, for decks that model
+        half or a quarter of a body.
 
     Returns
     -------
@@ -63,7 +67,9 @@ def plot(
     out = Path(out)
     archive = Archive(archive_path)
     chosen = archive.timestep(step).step
-    view = View.choose(archive, variable, step=chosen, materials=materials, level=level, plane=plane)
+    view = View.choose(
+        archive, variable, step=chosen, materials=materials, level=level, plane=plane, mirrored=mirrored
+    )
     known = _SUFFIXES if len(view.axes) == 3 else _FLAT_SUFFIXES
     if out.suffix.lower() not in known:
         message = f"no format of pictures is known by the suffix {out.suffix!r}"

@@ -141,8 +141,9 @@ class Scene:
             fmt="%.4g",
             **options,
         )
-        for axis in np.flatnonzero(lengths > _SHORT * lengths[list(view.axes)].max()):
-            drawn.SetAxisLabels(int(axis), None)  # VTK's own, which are round numbers, in place of both ends
+        for number, length in enumerate(lengths):
+            if length > _SHORT * lengths[list(view.axes)].max():
+                drawn.SetAxisLabels(number, None)  # VTK's own, round numbers, in place of both ends
 
     def _aim(self, view: View, shown: Range) -> None:
         """Look at the box around what is shown, from where such views are first seen."""

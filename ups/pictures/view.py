@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -78,6 +78,8 @@ class View:
         The slice, or None.
     axes
         Axes that the picture extends along, 1 to 3 of them.
+    mirrored
+        Axes across whose lower end of the grid particles are shown a second time, as in a mirror.
     """
 
     archive: Archive
@@ -86,6 +88,7 @@ class View:
     level: int
     plane: Slice | None
     axes: tuple[int, ...]
+    mirrored: tuple[int, ...] = ()
 
     @classmethod
     def choose(
@@ -97,6 +100,7 @@ class View:
         materials: Sequence[int] | None = None,
         level: int = 0,
         plane: Slice | None = None,
+        mirrored: Sequence[int] = (),
     ) -> View:
         """Complete what was asked for with what suits the archive.
 
@@ -114,11 +118,14 @@ class View:
             Level of a grid variable.
         plane
             Slice through a body in space, or None.
+        mirrored
+            Axes across whose lower end of the grid the particles are mirrored.
 
         Raises
         ------
         ArchiveError
-            Where there is no such variable, material or level, or the slice misses the grid.
+            Where there is no such variable, material or level, the slice misses the grid, or a variable of
+            the grid is to be mirrored.
         """
         named = _default(archive, step) if variable is None else _scalar(archive, archive.find(variable))
         label = named.declaration.name
@@ -140,7 +147,10 @@ class View:
         levels = archive.grid(step).levels
         if not 0 <= level < len(levels):
             raise ArchiveError(archive.path, f"there is no level {level}, only {len(levels)} levels")
-        return cls(archive, named, wanted, level, plane, _axes(archive, levels[level], plane))
+        if mirrored and not named.source.is_particle:
+            raise ArchiveError(archive.path, f"{label} is not on particles, and only they can be mirrored")
+        axes = _axes(archive, levels[level], plane)
+        return cls(archive, named, wanted, level, plane, axes, tuple(dict.fromkeys(mirrored)))
 
     @property
     def label(self) -> str:
@@ -191,7 +201,7 @@ class ParticleFrame:
 
 
 def particle_frame(view: View, step: int) -> ParticleFrame:
-    """Particles that a view shows at a time step: all, or those within half a cell of its slice."""
+    """Particles that a view shows at a time step: all, or those within half a cell of its slice; and mirrored."""
     level, label = view.lattice(step), view.named.declaration.name
     parts = []
     for material in view.materials:
@@ -203,7 +213,23 @@ def particle_frame(view: View, step: int) -> ParticleFrame:
             near = np.abs(positions[:, axis] - view.plane.position) <= level.spacing[axis] / 2.0
             positions, edges, values = positions[near], edges[near], values[near]
         parts.append((positions, edges, values, np.full(len(values), material)))
-    return ParticleFrame(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+    frame = ParticleFrame(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+    low, _high = level.bounds(level.interior)
+    for axis in view.mirrored:
+        frame = _with_mirror_image(view, frame, axis, low[axis])
+    return frame
+
+
+def _with_mirror_image(view: View, frame: ParticleFrame, axis: int, position: float) -> ParticleFrame:
+    """Particles with their images in a plane across an axis; components change sign as they do in a mirror."""
+    positions, edges = frame.positions.copy(), frame.edges.copy()
+    positions[:, axis] = 2.0 * position - positions[:, axis]
+    edges[:, axis] *= -1.0
+    component = view.named.measure.name if view.named.measure is not None else ""
+    is_odd = set(component) <= set("XYZ") and component.count("XYZ"[axis]) % 2 == 1
+    image = ParticleFrame(positions, edges, -frame.values if is_odd else frame.values, frame.materials)
+    pairs = ((getattr(frame, f.name), getattr(image, f.name)) for f in fields(frame))
+    return ParticleFrame(*(np.concatenate(pair) for pair in pairs))
 
 
 def plane_corners(frame: ParticleFrame, axes: Sequence[int]) -> np.ndarray:
@@ -262,6 +288,8 @@ def range_of(view: View, steps: Sequence[int], limits: tuple[float, float] | Non
     """
     level = view.lattice(steps[-1])
     grid_low, grid_high = (np.array(corner) for corner in level.bounds(level.interior))
+    mirrored = list(view.mirrored)
+    grid_low[mirrored] = (2.0 * grid_low - grid_high)[mirrored]
     ends: list[tuple[float, float]] = []
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for step in steps:

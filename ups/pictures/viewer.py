@@ -29,7 +29,7 @@ class Viewer:
         The archive.
     plotter
         A pyvista plotter, to draw in.
-    variable, step, plane, materials, level, limits
+    variable, step, plane, materials, level, limits, mirrored
         What is shown first, as for `ups.pictures.plot.plot`.
     frame
         Where in the plotter it is drawn.
@@ -60,11 +60,13 @@ class Viewer:
         materials: Sequence[int] | None = None,
         level: int = 0,
         limits: tuple[float, float] | None = None,
+        mirrored: Sequence[int] = (),
         frame: Frame | None = None,
     ) -> None:
         archive = Archive(archive_path)
         chosen = archive.timestep(step)
         options: dict[str, Any] = {"materials": materials, "level": level, "plane": plane}
+        options["mirrored"] = mirrored
         self.view = View.choose(archive, variable, step=chosen.step, **options)
         self.position = archive.timesteps.index(chosen)
         self.trouble = ""
@@ -213,6 +215,7 @@ class Viewer:
     def _choose(self, variable: str, materials: Sequence[int] | None) -> None:
         view = self.view
         options: dict[str, Any] = {"materials": materials, "level": view.level, "plane": view.plane}
+        options["mirrored"] = view.mirrored
         self.view = View.choose(view.archive, variable, step=self.step, **options)
         self._all = materials is None
         self._limits = self._seen = None

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 from PIL import Image
 
 from cli import main
-from ups.archive import Archive, ArchiveError
+from ups.archive import Archive, ArchiveError, ArchiveWriter, Variable
 from ups.pictures import flat, solid
 from ups.pictures.history import plot_histories
 from ups.pictures.movie import movie
@@ -93,6 +93,35 @@ def test_a_small_body_fills_the_picture(make):
     _view, shown = view_of(make((24, 24, 24), body=(2, 2, 2)), "speed")
     assert shown.low == (0, 0, 0)
     assert max(shown.high) < 2
+
+
+def test_a_mirror_image_beside_the_particles(make):
+    archive = make((4, 2, 1))
+    view, shown = view_of(archive, "velocity:X", mirrored=[0])
+    frame = particle_frame(view, 6)
+    ours, image = np.split(frame.positions, 2)
+    assert image == pytest.approx(ours * [-1, 1, 1])
+    assert frame.values == pytest.approx(6 * frame.positions[:, 0])  # the component changes its sign
+    assert (shown.low[0], shown.high[0]) == (-2, 2)
+    view, _shown = view_of(archive, "speed", mirrored=[0, 1, 0])
+    assert particle_frame(view, 6).values == pytest.approx(np.tile(ours[:, 0] * 6, 4))
+    with pytest.raises(ArchiveError, match="only they can be mirrored"):
+        view_of(archive, "g.temperature", mirrored=[0])
+    done = CliRunner().invoke(main, ["plot", str(archive), "--mirror", "x", "-o", str(archive) + ".png"])
+    assert done.exit_code == 0
+
+
+def test_a_fluid_is_shown_by_its_pressure(make, tmp_path):
+    stress = Variable("p.stress", "ParticleVariable", "Matrix3")
+    archive = Archive(make((4, 2, 1)))
+    held = archive.fields(6)
+    count = len(next(iter(held.values()))[0])
+    for noise, name in ((1e-12, "p.stress:pressure"), (0.1, "p.stress:vonMises")):
+        values = -5.0 * np.eye(3) + noise * np.array([[0, 1, 0], [1, 0, 0], [0, 0, 0]])
+        folder = tmp_path / name.partition(":")[2]
+        with ArchiveWriter.create(folder, archive.grid(6), input_xml="<a/>") as writer:
+            writer.write_timestep(1, 1.0, 1.0, held | {stress: {0: np.tile(values, (count, 1, 1))}})
+        assert View.choose(Archive(folder)).named.declaration.name == name
 
 
 def test_numbers_that_differ_by_rounding_are_one_colour(make):
