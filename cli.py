@@ -570,6 +570,7 @@ def _of_pictures(command: Callable[..., None]) -> Callable[..., None]:
 @click.argument("archive", type=click.Path())
 @_of_pictures
 @click.option("-o", "--output", type=click.Path(), help="The picture, such as x.png.")
+@click.option("--width", type=click.IntRange(100, 10000), metavar="PIXELS", help="Pixels across; about 1000.")
 @click.option("--movie", type=click.Path(), help="A movie of all time steps, x.gif or x.mp4.")
 @click.option("--fps", type=click.FloatRange(min=0.1), default=10.0, help="Frames of it a second; 10.")
 def plot(
@@ -582,6 +583,7 @@ def plot(
     limits: tuple[float, float] | None,
     mirrored: list[int],
     output: str | None,
+    width: int | None,
     movie: str | None,
     fps: float,
 ) -> None:
@@ -598,6 +600,7 @@ def plot(
             "level": level,
             "limits": limits,
             "mirrored": mirrored,
+            "width": width,
         }
         if output is not None:
             click.echo(make_picture(archive, output, variable, step=step, **chosen))

@@ -27,7 +27,7 @@ _MOST_BOXES = 200_000
 """Particles beyond this many are drawn as dots."""
 
 
-def draw(view: View, step: int, shown: Range) -> Figure:
+def draw(view: View, step: int, shown: Range, width: int | None = None) -> Figure:
     """Draw a view along one or two axes.
 
     Parameters
@@ -38,10 +38,14 @@ def draw(view: View, step: int, shown: Range) -> Figure:
         The time step.
     shown
         What the colour bar, or along one axis the other one, and the axes cover.
+    width
+        Pixels across, or None for what suits the shape.
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=_size(view, shown), dpi=_DPI, layout="constrained")
+    size = _size(view, shown)
+    dpi = _DPI if width is None else width / size[0]
+    figure = Figure(figsize=size, dpi=dpi, layout="constrained")
     axes = figure.add_subplot()
     axes.set_title(textwrap.fill(view.title(step), int(_LETTERS * figure.get_figwidth())), fontsize=10)
     if len(view.axes) == 1:
@@ -62,7 +66,7 @@ def pixels(figure: Figure) -> np.ndarray:
 
 def save(figure: Figure, path: Path) -> None:
     """Write a figure to a file, in the format of its suffix; raises OSError where the disk refuses."""
-    figure.savefig(path, dpi=_DPI)
+    figure.savefig(path, dpi=figure.dpi)
 
 
 def _size(view: View, shown: Range) -> tuple[float, float]:
@@ -152,7 +156,7 @@ def _particles(view: View, step: int, axes: Any, shown: Range) -> Any:
         dots.set_clim(*shown.values)
         return dots
     corners = plane_corners(frame, plane)[order][..., plane]
-    boxes = PolyCollection(list(corners), array=values, edgecolors="face", linewidths=0.6)
+    boxes = PolyCollection(list(corners), array=values, edgecolors="face", linewidths=0.6, antialiased=False)
     boxes.set_clim(*shown.values)
     return axes.add_collection(boxes)
 

@@ -31,6 +31,7 @@ def movie(
     level: int = 0,
     limits: tuple[float, float] | None = None,
     mirrored: Sequence[int] = (),
+    width: int | None = None,
     frames_per_second: float = 10.0,
     progress: Progress | None = None,
 ) -> Path:
@@ -38,7 +39,7 @@ def movie(
 
     Parameters
     ----------
-    archive_path, variable, plane, materials, level, limits, mirrored
+    archive_path, variable, plane, materials, level, limits, mirrored, width
         As for `ups.pictures.plot.plot`; limits are by default those over all time steps.
     out
         The movie, ``.gif`` or ``.mp4``.
@@ -67,7 +68,7 @@ def movie(
 
     def frames() -> Iterator[np.ndarray]:
         for done, step in enumerate(steps, 1):
-            yield frame_pixels(view, step, shown)
+            yield frame_pixels(view, step, shown, width)
             if progress is not None:
                 progress(done, len(steps))
 

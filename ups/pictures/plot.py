@@ -26,6 +26,7 @@ def plot(
     level: int = 0,
     limits: tuple[float, float] | None = None,
     mirrored: Sequence[int] = (),
+    width: int | None = None,
 ) -> Path:
     """Draw a variable at a time step: a profile along one axis, a plane, or a body in space.
 
@@ -53,6 +54,8 @@ def plot(
     mirrored
         Axes (0, 1, 2) across whose lower end of the grid the particles are mirrored, for decks that model
         half or a quarter of a body.
+    width
+        Pixels across; None for about a thousand, fewer for slender shapes.
 
     Returns
     -------
@@ -77,18 +80,18 @@ def plot(
     shown = range_of(view, [chosen], limits)
     try:
         if len(view.axes) == 3:
-            with solid.rendered(view, chosen, shown) as plotter:
+            with solid.rendered(view, chosen, shown, width) as plotter:
                 solid.save(plotter, out)
         else:
-            flat.save(flat.draw(view, chosen, shown), out)
+            flat.save(flat.draw(view, chosen, shown, width), out)
     except OSError as error:
         raise ArchiveError.from_os_error(out, "write the picture", error) from error
     return out
 
 
-def frame_pixels(view: View, step: int, shown: Range) -> np.ndarray:
+def frame_pixels(view: View, step: int, shown: Range, width: int | None = None) -> np.ndarray:
     """Picture of a view at a time step as colours, shape (height, width, 3)."""
     if len(view.axes) == 3:
-        with solid.rendered(view, step, shown) as plotter:
+        with solid.rendered(view, step, shown, width) as plotter:
             return solid.pixels(plotter)
-    return flat.pixels(flat.draw(view, step, shown))
+    return flat.pixels(flat.draw(view, step, shown, width))

@@ -14,8 +14,8 @@ from ups.archive.variables import NODE
 from ups.convert.glyphs import box_corners
 from ups.pictures.view import Range, View, grid_field, particle_frame, plane_corners
 
-SIZE = (1000, 800)
-"""Pixels."""
+_WIDTH, _SHAPE = 1000, 0.8
+"""Pixels across, and the height in shares of them."""
 
 _MOST_BOXES = 200_000
 """Particles beyond this many are drawn as points."""
@@ -67,6 +67,7 @@ class Scene:
     def __init__(self, plotter: Any, frame: Frame | None = None) -> None:
         self.plotter = plotter
         self._frame = frame or Frame()
+        self._scale = plotter.window_size[0] / _WIDTH
         self._bar = ""
         self._chart: Any = None
         self._seen_from: tuple[object, ...] = ()
@@ -84,7 +85,7 @@ class Scene:
             What the colour bar, or the vertical axis of a chart, and the axes around the picture cover.
         """
         self._clear()
-        text = {"font_size": 10, "color": "black", "name": "title", "viewport": True}
+        text = {"font_size": self._points(10), "color": "black", "name": "title", "viewport": True}
         self.plotter.add_text(view.title(step), position=(0.01, 0.955), **text)
         if len(view.axes) == 1:
             self._draw_chart(view, step, shown)
@@ -111,11 +112,20 @@ class Scene:
             "reset_camera": False,
         }
         if dots:
-            options |= {"point_size": _dot_size(view, shown), "render_points_as_spheres": not flat}
-        self.plotter.add_mesh(mesh, name="shown", scalar_bar_args={**_BAR, "title": self._bar}, **options)
+            options |= {
+                "point_size": _dot_size(view, shown, self.plotter.window_size[0]),
+                "render_points_as_spheres": not flat,
+            }
+        bar = _BAR | {"title": self._bar, "title_font_size": self._points(18)}
+        bar["label_font_size"] = self._points(16)
+        self.plotter.add_mesh(mesh, name="shown", scalar_bar_args=bar, **options)
         if flat and not dots:  # closes the seams between boxes
             options |= {"style": "wireframe", "line_width": 1.5, "show_scalar_bar": False}
             self.plotter.add_mesh(mesh, name="outlines", **options)
+
+    def _points(self, size: int) -> int:
+        """Size of letters that have this size in a picture of the usual width."""
+        return max(6, round(size * self._scale))
 
     def _clear(self) -> None:
         for name in ("shown", "outlines"):
@@ -137,7 +147,7 @@ class Scene:
             color="dimgray",
             location="outer",
             ticks="outside",
-            font_size=15,
+            font_size=self._points(15),
             fmt="%.4g",
             **options,
         )
@@ -156,7 +166,7 @@ class Scene:
         self.plotter.reset_camera(bounds=_flattened(shown))
         if len(view.axes) == 2:
             across, up = np.subtract(shown.high, shown.low)[list(view.axes)] / 2.0
-            self.plotter.camera.parallel_scale = max(up, across * SIZE[1] / SIZE[0] / 0.9) / 0.85
+            self.plotter.camera.parallel_scale = max(up, across * _SHAPE / 0.9) / 0.85
         self.plotter.camera.zoom(self._frame.zoom)
         self.plotter.camera.SetWindowCenter(*self._frame.shift)
 
@@ -181,7 +191,7 @@ class Scene:
         chart.x_range = [shown.low[axis], shown.high[axis]]
         chart.y_range = [least - margin, most + margin]
         for drawn in (chart.x_axis, chart.y_axis):
-            drawn.label_size, drawn.tick_label_size = 16, 14
+            drawn.label_size, drawn.tick_label_size = self._points(16), self._points(14)
         chart.legend_visible = any(profile.name for profile in shown_profiles)
         self.plotter.add_chart(chart)
 
@@ -198,16 +208,14 @@ _BAR = {
     "position_y": 0.15,
     "height": 0.7,
     "width": 0.06,
-    "title_font_size": 18,
-    "label_font_size": 16,
     "fmt": "%.4g",
 }
 
 
 @contextmanager
-def rendered(view: View, step: int, shown: Range) -> Iterator[Any]:
-    """Render a view without a display; gives the pyvista plotter while the picture can be taken."""
-    plotter = new_plotter(off_screen=True)
+def rendered(view: View, step: int, shown: Range, width: int | None = None) -> Iterator[Any]:
+    """Render a view without a display, so many pixels across; gives the pyvista plotter to take a picture of."""
+    plotter = new_plotter(off_screen=True, width=width or _WIDTH)
     try:
         Scene(plotter).draw(view, step, shown)
         yield plotter
@@ -215,9 +223,10 @@ def rendered(view: View, step: int, shown: Range) -> Iterator[Any]:
         plotter.close()
 
 
-def new_plotter(*, off_screen: bool, title: str = "") -> Any:
+def new_plotter(*, off_screen: bool, title: str = "", width: int = _WIDTH) -> Any:
     """Return an empty plotter with what all pictures share."""
-    plotter = _pyvista().Plotter(off_screen=off_screen, window_size=SIZE, title=title or None)
+    size = (width, round(_SHAPE * width))
+    plotter = _pyvista().Plotter(off_screen=off_screen, window_size=size, title=title or None)
     plotter.set_background("white")
     plotter.enable_anti_aliasing("msaa")
     return plotter
@@ -244,11 +253,11 @@ def _pyvista() -> Any:
     return pyvista
 
 
-def _dot_size(view: View, shown: Range) -> float:
+def _dot_size(view: View, shown: Range, width: int) -> float:
     """Pixels of a dot as wide as a particle, which is half a cell, where everything shown is in the picture."""
     level = view.archive.grid(-1).levels[view.level]
     extent = float(np.linalg.norm(np.subtract(shown.high, shown.low)))
-    return max(2.0, 0.6 * max(level.spacing) / extent * SIZE[1])
+    return max(2.0, 0.6 * max(level.spacing) / extent * _SHAPE * width)
 
 
 def _particle_mesh(view: View, step: int) -> Any:

@@ -132,10 +132,12 @@ def test_numbers_that_differ_by_rounding_are_one_colour(make):
 def test_pictures_of_the_command(make, tmp_path):
     archive = make((4, 2, 1))
     out = tmp_path / "x.png"
-    done = CliRunner().invoke(main, ["plot", str(archive), "--variable", "velocity:X", "-o", str(out)])
-    assert (done.exit_code, done.output) == (0, f"{out}\n")
-    with Image.open(out) as picture:
-        assert picture.size[0] == 960
+    arguments = ["plot", str(archive), "--variable", "velocity:X", "-o", str(out)]
+    for options, width in (([], 960), (["--width", "500"], 500)):
+        done = CliRunner().invoke(main, [*arguments, *options])
+        assert (done.exit_code, done.output) == (0, f"{out}\n")
+        with Image.open(out) as picture:
+            assert picture.size[0] == width
     for wrong in (["--slice", "z"], ["--slice", "z=a"], ["--step", "first"], []):
         arguments = ["plot", str(archive), *wrong, *(["-o", str(out)] if wrong else [])]
         assert CliRunner().invoke(main, arguments).exit_code == 2
