@@ -212,4 +212,16 @@ def test_histories(make, tmp_path):
     assert "did you mean KineticEnergy?" in done.output
     with pytest.raises(ArchiveError, match="has no component W; there are: X, Y, Z"):
         plot_histories(archive, ["TotalMomentum:W"], out)
-    assert plot_histories(archive, [], tmp_path / "all.svg").read_text().count("KineticEnergy") >= 1
+    assert "KineticEnergy [J]" in plot_histories(archive, [], tmp_path / "all.svg").read_text()
+
+
+def test_histories_of_two_archives(make, tmp_path):
+    archive = make((4, 2, 1))
+    other = archive.rename(tmp_path / "b.uda")
+    arguments = ["history", str(make((4, 2, 1))), "KineticEnergy", "TotalMomentum", "--with", str(other)]
+    done = CliRunner().invoke(main, [*arguments, "-o", str(tmp_path / "x.svg")])
+    assert done.exit_code == 0, done.output
+    drawn = (tmp_path / "x.svg").read_text()
+    for name in ("KineticEnergy (a.uda)", "KineticEnergy (b.uda)", "TotalMomentum:Y (b.uda)"):
+        assert f"<!-- {name} -->" in drawn
+    assert "<!-- TotalMomentum [kg m/s] -->" in drawn
