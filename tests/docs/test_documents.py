@@ -11,6 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 KERNELS = [f"solver.kernels.{name}" for name in ("nodes", "settle", "stress", "transfer")]
+MOST_BYTES_OF_A_PICTURE = 150_000
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 
 
@@ -43,6 +44,16 @@ def test_files_exist(page: Path) -> None:
     missing = [name for name in named if not (ROOT / name).exists() and "swift" not in name]
     missing += [link for link in linked if not (page.parent / link).exists()]
     assert missing == []
+
+
+@each_page
+def test_the_command_that_makes_a_picture_stands_beside_it(page: Path) -> None:
+    text = page.read_text()
+    for link in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text):
+        picture = (page.parent / link).resolve()
+        name = picture.relative_to(ROOT)
+        assert re.search(rf"^[^|]*ups (plot|history) .*-o {name}$", text, re.MULTILINE)
+        assert picture.stat().st_size < MOST_BYTES_OF_A_PICTURE
 
 
 def test_the_kernels_of_the_step_exist() -> None:

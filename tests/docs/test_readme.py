@@ -43,13 +43,14 @@ def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
 
 def test_the_commands_of_the_first_deck_work(folder: Path) -> None:
     lines = [line for line in block_after("Run it, look at it").splitlines() if line]
-    assert len(lines) == 5
+    assert len(lines) == 6
     for line in lines:
         program, *arguments = shlex.split(line, comments=True)
         assert program == "ups"
         outcome = run(folder, str(ROOT / "cli.py"), *arguments)
         assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert (folder / "collidingDisks.uda").is_symlink()
+    assert (folder / "disks.png").is_file()
     assert (folder / "disks.pvd").is_file()
 
 
