@@ -10,6 +10,7 @@ import contextlib
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
@@ -23,6 +24,10 @@ if TYPE_CHECKING:
 
 _SECONDS_TO_FINISH = 60.0
 """How long the end of a run waits for the last picture."""
+
+
+_LONGEST_PAUSE = 10.0
+"""Seconds after a picture before the next."""
 
 
 class Live(Observer):
@@ -149,9 +154,10 @@ def draw_at_each(lines: Iterable[object], directory: Path, variable: str | None)
         steps = Archive(directory).timesteps
         if not steps or steps[-1].step == drawn:
             continue
-        drawn = steps[-1].step
+        drawn, began = steps[-1].step, time.monotonic()
         plot(directory, partial_file, variable, step=drawn)
         partial_file.replace(out)
+        time.sleep(min(time.monotonic() - began, _LONGEST_PAUSE))  # half of a core is enough for pictures
 
 
 def open_window(lines: Iterable[object], directory: Path, variable: str | None) -> None:
@@ -168,7 +174,7 @@ def open_window(lines: Iterable[object], directory: Path, variable: str | None) 
 
 def _main(how: str, directory: str, variable: str) -> None:
     with contextlib.suppress(AttributeError, OSError):  # Windows has none
-        os.nice(5)  # the run comes first
+        os.nice(10)  # the run comes first
     draw = {"file": draw_at_each, "window": open_window}[how]
     try:
         draw(sys.stdin, Path(directory), variable or None)
