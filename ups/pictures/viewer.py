@@ -39,7 +39,7 @@ class Viewer:
     position
         Index of the time step among `timesteps`.
     trouble
-        Why the last drawing failed, or nothing.
+        Why the last choice or drawing failed, or nothing.
     plotter
         What it is drawn in.
 
@@ -69,7 +69,7 @@ class Viewer:
         options["mirrored"] = mirrored
         self.view = View.choose(archive, variable, step=chosen.step, **options)
         self.position = archive.timesteps.index(chosen)
-        self.trouble = ""
+        self.trouble = self._refusal = ""
         self._all = materials is None
         self._limits = limits
         self._seen: Range | None = None
@@ -95,13 +95,19 @@ class Viewer:
     @property
     def variables(self) -> list[str]:
         """What is usually looked at, and what is shown."""
-        names = usual_names(self.view.archive, self.step)
+        try:
+            names = usual_names(self.view.archive, self.step)
+        except ArchiveError:  # a damaged step; `draw` says so
+            names = []
         return names if self.variable in names else [self.variable, *names]
 
     @property
     def measures(self) -> list[str]:
         """What else can be shown: measures and components of vectors and tensors."""
-        return measure_names(self.view.archive, self.step)
+        try:
+            return measure_names(self.view.archive, self.step)
+        except ArchiveError:
+            return []
 
     @property
     def material(self) -> str:
@@ -114,9 +120,10 @@ class Viewer:
         archive, source = self.view.archive, self.view.named.source
         try:
             stored = archive.materials(self.step, source.name)
+            with_all = source.container == NODE and is_with_all(archive, self.step, stored)
         except ArchiveError:
-            stored = list(self.view.materials)
-        if source.container == NODE and is_with_all(archive, self.step, stored):
+            return [self.material]
+        if with_all:
             return [TOGETHER, *map(str, stored[:-1])]
         if source.is_particle and len(stored) > 1:
             return [TOGETHER, *map(str, stored)]
@@ -136,14 +143,8 @@ class Viewer:
 
     def show_variable(self, name: str) -> None:
         """Show another variable, of all materials where the present one does not have it."""
-        if name == self.variable:
-            return
-        for materials in ((None if self._all else self.view.materials), None):
-            try:
-                self._choose(name, materials)
-                return
-            except ArchiveError as problem:
-                self.trouble = str(problem)
+        if name != self.variable and not self._choose(name, None if self._all else self.view.materials):
+            self._choose(name, None)
 
     def show_material(self, name: str) -> None:
         """Show one material, or `TOGETHER`."""
@@ -181,8 +182,11 @@ class Viewer:
     def fit_all(self) -> None:
         """Let the colours cover all time steps, each of which is read for it."""
         label = self.view.named.source.name
-        steps = [t.step for t in self.timesteps if label in self.view.archive.labels(t.step)]
-        self._limits, self._seen = None, range_of(self.view, steps)
+        try:
+            steps = [t.step for t in self.timesteps if label in self.view.archive.labels(t.step)]
+            self._limits, self._seen = None, range_of(self.view, steps)
+        except ArchiveError as problem:
+            self._refusal = str(problem)
 
     def refresh(self) -> bool:
         """Look for time steps written since; where the last was shown, show the new last. Whether there are."""
@@ -204,21 +208,27 @@ class Viewer:
 
     def draw(self) -> None:
         """Draw what is chosen; what cannot be drawn is said in `trouble` and left as it was."""
+        self.trouble, self._refusal = self._refusal, ""
         try:
             now = range_of(self.view, [self.step])
             self._seen = now if self._seen is None else self._seen.joined(now)
             self._scene.draw(self.view, self.step, replace(self._seen, values=self.limits))
-            self.trouble = ""
         except ArchiveError as problem:
             self.trouble = str(problem)
 
-    def _choose(self, variable: str, materials: Sequence[int] | None) -> None:
+    def _choose(self, variable: str, materials: Sequence[int] | None) -> bool:
+        """Show a variable of some materials; whether it can be."""
         view = self.view
         options: dict[str, Any] = {"materials": materials, "level": view.level, "plane": view.plane}
         options["mirrored"] = view.mirrored
-        self.view = View.choose(view.archive, variable, step=self.step, **options)
-        self._all = materials is None
+        try:
+            self.view = View.choose(view.archive, variable, step=self.step, **options)
+        except ArchiveError as problem:
+            self._refusal = str(problem)
+            return False
+        self._all, self._refusal = materials is None, ""
         self._limits = self._seen = None
+        return True
 
 
 def _stamp(archive: Archive) -> tuple[int, int]:

@@ -107,6 +107,16 @@ def test_colours_cover_what_was_shown(make, look):
     assert viewer.limits == pytest.approx((0.99 / 32, 1.01 / 32))
 
 
+def test_a_choice_that_is_not_stored_is_said_once(make, look):
+    viewer = look(make((4, 2, 1)))
+    viewer.show_variable("p.stress")
+    viewer.draw()
+    assert "there is no variable p.stress" in viewer.trouble
+    assert viewer.variable == "p.velocity:magnitude"
+    viewer.draw()
+    assert viewer.trouble == ""
+
+
 def test_steps_go_round_and_stop_at_the_ends(make, look):
     viewer = look(make((4, 2, 1)))
     assert viewer.step == 6
@@ -134,9 +144,20 @@ def test_damage_is_said_and_the_rest_still_shown(make, look):
     viewer = look(archive, step=2)
     for file in (archive / "t00006" / "l0").glob("*.data"):
         file.write_bytes(b"")
+    viewer.fit_all()
+    viewer.draw()
+    assert str(archive) in viewer.trouble
     viewer.show_next()
     viewer.draw()
     assert str(archive) in viewer.trouble
+    for file in (archive / "t00006" / "l0").glob("*.xml"):
+        file.unlink()
+    viewer = look(archive, step=2)
+    viewer.show_next()
+    viewer.draw()
+    assert str(archive) in viewer.trouble
+    assert viewer.variables == ["p.velocity:magnitude"]
+    assert (viewer.measures, viewer.materials) == ([], ["all"])
     viewer.show_next()
     viewer.draw()
     assert viewer.trouble == ""
