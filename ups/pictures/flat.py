@@ -133,12 +133,8 @@ def _draw_plane(view: View, step: int, figure: Figure, axes: Any, shown: Range) 
     low, high = shown.low, shown.high
     axes.set(xlim=(low[across], high[across]), ylim=(low[up], high[up]), aspect="equal")
     axes.set(xlabel=f"{'xyz'[across]} [m]", ylabel=f"{'xyz'[up]} [m]")
-    if view.named.source.is_particle:
-        drawn = _particles(view, step, axes, shown)
-    else:
-        (x, y), values = _on_axes(view, step)
-        shading = "gouraud" if view.named.source.container == NODE else "nearest"
-        drawn = axes.pcolormesh(x, y, values.T, shading=shading, clim=shown.values)
+    draw_it = _particles if view.named.source.is_particle else _grid
+    drawn = draw_it(view, step, axes, shown)
     axes.ticklabel_format(useMathText=True)
     bar = figure.colorbar(drawn, ax=axes, label=view.label, fraction=0.06, aspect=25, pad=0.02)
     bar.ax.ticklabel_format(useMathText=True)
@@ -159,6 +155,24 @@ def _particles(view: View, step: int, axes: Any, shown: Range) -> Any:
     boxes = PolyCollection(list(corners), array=values, edgecolors="face", linewidths=0.6, antialiased=False)
     boxes.set_clim(*shown.values)
     return axes.add_collection(boxes)
+
+
+def _grid(view: View, step: int, axes: Any, shown: Range) -> Any:
+    """Draw a grid variable: cells as they are, between nodes the interpolated numbers."""
+    (x, y), values = _on_axes(view, step)
+    ends = [end for line in (x, y) for end in _half_a_step_beyond(line)]
+    way = "bilinear" if view.named.source.container == NODE else "nearest"
+    options = {"origin": "lower", "aspect": "equal", "interpolation_stage": "data", "clim": shown.values}
+    limits = axes.get_xlim(), axes.get_ylim()
+    drawn = axes.imshow(values.T, extent=ends, interpolation=way, **options)
+    axes.set(xlim=limits[0], ylim=limits[1])
+    return drawn
+
+
+def _half_a_step_beyond(line: np.ndarray) -> tuple[float, float]:
+    """Ends of a row of equal pieces around the places of a line."""
+    half = (line[-1] - line[0]) / (len(line) - 1) / 2.0 if len(line) > 1 else 0.5
+    return float(line[0] - half), float(line[-1] + half)
 
 
 def _on_axes(view: View, step: int) -> tuple[list[np.ndarray], np.ndarray]:

@@ -49,16 +49,34 @@ def test_particles_in_a_plane_are_the_boxes_they_fill(make):
     assert sorted(boxes.get_array()) == pytest.approx(sorted(values))
 
 
+@pytest.mark.parametrize("variable", ["speed", "g.temperature", "press_CC"])
+def test_colours_are_those_of_the_numbers_at_their_places(make, variable):
+    from matplotlib import colormaps
+
+    view, shown = view_of(make((4, 2, 1)), variable, materials=[0])
+    figure = flat.draw(view, 6, shown)
+    image = flat.pixels(figure)
+    for x in (0.385, 1.26, 1.635):
+        fastest = (np.floor((x + 0.25) / 0.25 - 0.5) + 0.5) * 0.25  # of two boxes there, the one on top
+        numbers = {"speed": 6 * fastest, "g.temperature": 6 * x / 0.5, "press_CC": np.floor(x / 0.5)}
+        number = numbers[variable]
+        share = (number - shown.values[0]) / (shown.values[1] - shown.values[0])
+        across, up = figure.axes[0].transData.transform((x, 0.3))
+        found = image[image.shape[0] - round(up), round(across)] / 255.0
+        assert found == pytest.approx(colormaps["viridis"](min(share, 1.0))[:3], abs=0.04)
+    assert image[3, 3].tolist() == [255, 255, 255]
+
+
 def test_nodes_and_cells_in_a_plane(make):
     archive = make((4, 2, 1))
     view, shown = view_of(archive, "g.temperature")
     assert view.materials == (1,)  # both together, as the particles have one material
     assert "material" not in view.title(6)
     assert "material 0" in View.choose(view.archive, "g.temperature", materials=[0]).title(6)
-    (mesh,) = flat.draw(view, 6, shown).axes[0].collections
+    (mesh,) = flat.draw(view, 6, shown).axes[0].images
     assert np.asarray(mesh.get_array()).reshape(3, 5).tolist() == [[10, 16, 22, 28, 34]] * 3
     view, shown = view_of(archive, "press_CC")
-    (mesh,) = flat.draw(view, 6, shown).axes[0].collections
+    (mesh,) = flat.draw(view, 6, shown).axes[0].images
     assert np.asarray(mesh.get_array()).reshape(2, 4).tolist() == [[0, 1, 2, 3]] * 2
 
 
@@ -72,7 +90,7 @@ def test_a_slice_through_a_body(make):
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("y [m]", "z [m]")
     assert "slice x = 0.6 m" in axes.get_title().replace("\n", " ")
     view, shown = view_of(archive, "g.temperature", plane=Slice(0, 0.75), materials=[0])
-    (mesh,) = flat.draw(view, 6, shown).axes[0].collections
+    (mesh,) = flat.draw(view, 6, shown).axes[0].images
     assert set(np.asarray(mesh.get_array()).ravel()) == {9.0}  # between the nodes 1 and 2
 
 
