@@ -18,6 +18,7 @@ from PIL import Image
 
 from cli import main
 from ups.archive import Archive, ArchiveError, ArchiveWriter
+from ups.pictures.plot import plot
 from ups.pictures.solid import new_plotter, pixels
 from ups.pictures.viewer import Viewer
 
@@ -181,6 +182,24 @@ def test_colours_stand_where_the_numbers_are(make, look, cells, variable, plane)
     assert np.all(pixels(viewer.plotter)[790, 20] == 255)
 
 
+@pytest.mark.parametrize("cells", [(4, 1, 1), (4, 2, 1), (4, 2, 2)])
+def test_nothing_is_drawn_where_no_particles_are_left(make, look, tmp_path, cells):
+    full = Archive(make(cells))
+    fields = {
+        variable: {m: values[:0] for m, values in held.items()}
+        for variable, held in full.fields(6).items()
+        if variable.is_particle
+    }
+    archive = tmp_path / "empty.uda"
+    with ArchiveWriter.create(archive, full.grid(6), input_xml="<a/>") as writer:
+        writer.write_timestep(1, 1.0, 1.0, fields)
+    viewer = look(archive)
+    viewer.draw()
+    assert viewer.trouble == ""
+    assert not np.any(np.ptp(pixels(viewer.plotter).astype(int), axis=2) > 60)
+    assert plot(archive, tmp_path / "x.png").is_file()
+
+
 def test_a_chart_where_there_is_one_axis(make, look):
     viewer = look(make((8, 1, 1)))
     viewer.draw()
@@ -195,6 +214,7 @@ def test_a_chart_where_there_is_one_axis(make, look):
 
 WINDOW = """
 import sys
+from ups.pictures.plot import plot
 from ups.pictures.solid import new_plotter, pixels
 from ups.pictures.viewer import Viewer
 from ups.pictures.window import FRAME, Window
