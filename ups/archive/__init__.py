@@ -4,6 +4,7 @@ from ups.archive.errors import ArchiveError
 from ups.archive.index import Timestep
 from ups.archive.layout import Box, Grid, Level, Patch
 from ups.archive.naming import next_numbered_directory
+from ups.archive.ranks import Ranks
 from ups.archive.reader import Archive, GridField
 from ups.archive.reductions import Reduction, ReductionFormat
 from ups.archive.tree import Fields, Positions
@@ -21,6 +22,7 @@ __all__ = [
     "Level",
     "Patch",
     "Positions",
+    "Ranks",
     "Reduction",
     "ReductionFormat",
     "Timestep",

@@ -221,13 +221,23 @@ class Level:
         high = [patch.high[d] + (0 if neighbour[d, 1] else layers[d] + closing[d]) for d in range(3)]
         return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
-    def whole(self, container: str, extra_cells: IntVector | None = None) -> Box:
-        """Smallest box around what all patches store: the shape of an array over the level."""
-        if extra_cells is None:
+    def whole(self, container: str, extra_cells: IntVector | None = None, rank: int | None = None) -> Box:
+        """Smallest box around what all patches store: the shape of an array over the level.
+
+        Parameters
+        ----------
+        container, extra_cells
+            As for `extent`.
+        rank
+            Only the patches of this rank, which must own one; None for all.
+        """
+        if extra_cells is None and rank is None:
             return self._whole[container]
-        return _around(
-            [self._extent(position, container, extra_cells) for position in range(len(self.patches))]
-        )
+        return _around([self.extent(p, container, extra_cells) for p in self.positions_of(rank)])
+
+    def positions_of(self, rank: int | None) -> list[int]:
+        """Positions in `patches` of those that a rank owns; of all for None."""
+        return [p for p, patch in enumerate(self.patches) if rank in (None, patch.proc)]
 
     @cached_property
     def _whole(self) -> dict[str, Box]:

@@ -203,9 +203,9 @@ class Archive:
         """XML elements that components left in ``timestep.xml``."""
         return self._step(step).file.sections
 
-    def state(self, step: int) -> dict[str, np.ndarray]:
-        """Arrays that `ArchiveWriter.write_checkpoint` was given as ``state``."""
-        return self._step(step).state()
+    def state(self, step: int, rank: int = 0) -> dict[str, np.ndarray]:
+        """Arrays that a rank gave `ArchiveWriter.write_checkpoint` as ``state``."""
+        return self._step(step).state(rank)
 
     def global_values(self, step: int) -> dict[str, dict[int, np.ndarray]]:
         """Values of a checkpoint that belong to no patch, by label and material (-1 for none)."""

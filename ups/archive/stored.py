@@ -20,8 +20,11 @@ from ups.archive.table import Entry, read_table
 from ups.archive.timestep import TimestepFile, read_timestep
 from ups.archive.variables import ELEMENTS, PARTICLE, Variable
 
-STATE_FILE = "restart.npz"
-"""File of a checkpoint that holds what only this program needs for a restart."""
+
+def state_file(rank: int) -> str:
+    """File of a checkpoint that holds what only this program needs for a restart, of one rank."""
+    return f"restart.{rank:05d}.npz" if rank else "restart.npz"
+
 
 _MAPPED_FROM = 1 << 20
 """Blocks of at least this many bytes are mapped into memory, smaller ones read: a map takes a file handle."""
@@ -239,9 +242,9 @@ class StoredTimestep:
             return Variable(entry.name, variable.container, "double")
         return variable
 
-    def state(self) -> dict[str, np.ndarray]:
-        """Arrays that this program left for a restart, by name."""
-        path = self.path.with_name(STATE_FILE)
+    def state(self, rank: int = 0) -> dict[str, np.ndarray]:
+        """Arrays that a rank of this program left for a restart, by name."""
+        path = self.path.with_name(state_file(rank))
         try:
             with np.load(path, allow_pickle=False) as stored:
                 return {name: stored[name] for name in stored.files}

@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -18,8 +19,9 @@ from lxml import etree
 from ups.archive import blocks
 from ups.archive.errors import ArchiveError
 from ups.archive.index import ArchiveIndex, Listed, Timestep
-from ups.archive.layout import Grid, Level
-from ups.archive.stored import STATE_FILE
+from ups.archive.layout import Box, Grid, Level
+from ups.archive.ranks import Ranks, together
+from ups.archive.stored import state_file
 from ups.archive.table import Entry, table_lines
 from ups.archive.timestep import timestep_lines
 from ups.archive.variables import PER_PATCH, Variable
@@ -30,6 +32,10 @@ Fields = Mapping[Variable, Mapping[int, npt.ArrayLike]]
 Particle variables: shape (n, element...). Node, cell and face variables: an array over the whole
 level, of the shape of `Level.whole` and indexed [x, y, z, component...]. Per-patch variables: shape
 (patches, element...). A matrix may be given as (..., 3, 3) or (..., 9).
+
+Where several ranks write together, each gives its own: the particles in its patches, arrays over the box
+around them (`Level.whole` with its ``rank``), its patches' values. All name the same variables and
+materials; the arrays of a rank that has no patch on a level are not looked at.
 """
 
 Positions = Mapping[int, npt.ArrayLike]
@@ -57,16 +63,38 @@ class Content:
 
 
 class Tree:
-    """A directory of time steps and its table of contents: the archive's own, or its checkpoints'."""
+    """A directory of time steps and its table of contents: the archive's own, or its checkpoints'.
 
-    def __init__(self, directory: Path, index: ArchiveIndex, grid: Grid, compression: str) -> None:
+    Several ranks write it together, each the data of its own patches, the first all else. One alone writes
+    the data of every patch, whichever rank the grid says that it belongs to.
+
+    Raises
+    ------
+    ValueError
+        Where several ranks write and a patch belongs to none of them.
+    """
+
+    def __init__(
+        self, directory: Path, index: ArchiveIndex, grid: Grid, compression: str, ranks: Ranks
+    ) -> None:
+        if 1 < ranks.size < grid.number_of_processes:
+            raise ValueError(f"{ranks.size} ranks write patches of {grid.number_of_processes}")
         self.directory = directory
         self.index = index
         self.grid = grid
         self.compression = compression
+        self.ranks = ranks
+        self._own = ranks.rank if ranks.size > 1 else None  # None for all
+
+    @property
+    def is_first(self) -> bool:
+        """Whether this rank writes what belongs to no patch, such as the table of contents."""
+        return self.ranks.rank == 0
 
     def save_index(self) -> None:
-        """Replace ``index.xml`` as a whole."""
+        """Replace ``index.xml`` as a whole, on the first rank."""
+        if not self.is_first:
+            return
         path = self.directory / "index.xml"
         with storing(path, "write the table of contents"):
             _write_lines(path.with_suffix(".partial"), self.index.lines())
@@ -78,23 +106,26 @@ class Tree:
             raise ArchiveError(self.directory, f"step {timestep.step} is stored already")
         if len(content.levels) != len(self.grid.levels):
             raise ValueError(f"{len(content.levels)} levels given for a grid of {len(self.grid.levels)}")
-        self._check_types(content)
         folder = self.directory / f"t{timestep.step:05d}"
         partial = folder.with_name(folder.name + ".partial")
-        with storing(folder, "write the time step"):
-            shutil.rmtree(partial, ignore_errors=True)
-            try:
-                partial.mkdir()
-                self._write_folder(partial, timestep, content)
-                if folder.exists():  # complete, but the run ended before it was named
-                    shutil.rmtree(folder)
-                partial.rename(folder)
-            except BaseException:
+        try:
+            with together(self.ranks, folder), storing(folder, "write the time step"):
+                self._check_types(content)
+                if self.is_first:
+                    self._begin_folder(partial)
+            with together(self.ranks, folder), storing(folder, "write the time step"):
+                self._write_levels(partial, content)
+            with together(self.ranks, folder), storing(folder, "write the time step"):
+                if self.is_first:
+                    self._finish_folder(partial, folder, timestep, content)
+        except BaseException:
+            if self.is_first:
                 shutil.rmtree(partial, ignore_errors=True)
-                raise
+            raise
         self._list_variables(content)
         self.index.timesteps.append(replace(timestep, href=f"{folder.name}/timestep.xml"))
-        self.save_index()
+        with together(self.ranks, self.directory):
+            self.save_index()
 
     def _check_types(self, content: Content) -> None:
         """Make sure that a variable keeps its type from step to step, as readers take it for granted."""
@@ -105,50 +136,66 @@ class Tree:
                 message = f"{variable.name} is a {variable.type_name}, but a {before} in earlier time steps"
                 raise ArchiveError(self.directory, message, advice="write to another archive")
 
-    def _write_folder(self, folder: Path, timestep: Timestep, content: Content) -> None:
+    def _begin_folder(self, partial: Path) -> None:
+        """Make the folder of a time step and those of its levels, without what an earlier attempt left."""
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir()
+        for level in self.grid.levels:
+            (partial / f"l{level.index}").mkdir()
+
+    def _write_levels(self, folder: Path, content: Content) -> None:
+        """Write the tables and data of the patches of this rank, and what it wants for a restart."""
         for level, fields in zip(self.grid.levels, content.levels, strict=True):
+            owners = {level.patches[position].proc for position in level.positions_of(self._own)}
+            if not owners:
+                continue
             places = _positions(fields, self.index.particle_position)
             if content.positions is not None:
                 places = content.positions[level.index]
-            subfolder = folder / f"l{level.index}"
-            subfolder.mkdir()
-            stored = [_StoredVariable.make(level, v, by_material) for v, by_material in fields.items()]
-            shares = {m: _Shares.make(level, m, where, folder) for m, where in places.items()}
-            for proc in sorted({patch.proc for patch in level.patches}):
-                self._write_rank(subfolder, level, proc, stored, shares)
-        if content.global_values:
-            self._write_globals(folder, content.global_values)
+            share = _Share(level, self._own)
+            stored = [_StoredVariable.make(share, v, by_material) for v, by_material in fields.items()]
+            owned = {m: _Particles.make(share, m, where, folder) for m, where in places.items()}
+            for proc in sorted(owners):
+                self._write_rank(folder / f"l{level.index}", share, proc, stored, owned)
         if content.state is not None:
-            _write_state(folder / STATE_FILE, content.state)
+            _write_state(folder / state_file(self.ranks.rank), content.state)
+
+    def _finish_folder(self, partial: Path, folder: Path, timestep: Timestep, content: Content) -> None:
+        """Write what belongs to no patch, and give the folder its name."""
+        if content.global_values:
+            self._write_globals(partial, content.global_values)
         lines = timestep_lines(
             timestep, self.grid, has_globals=bool(content.global_values), sections=content.sections
         )
-        _write_lines(folder / "timestep.xml", lines)
+        _write_lines(partial / "timestep.xml", lines)
+        if folder.exists():  # complete, but the run ended before it was named
+            shutil.rmtree(folder)
+        partial.rename(folder)
 
     def _write_rank(
         self,
         folder: Path,
-        level: Level,
+        share: _Share,
         proc: int,
         stored: Sequence[_StoredVariable],
-        shares: Mapping[int, _Shares],
+        particles: Mapping[int, _Particles],
     ) -> None:
         """Write the table and the data of the patches that one rank owns on one level."""
         name = f"p{proc:05d}"
-        owned = [position for position, patch in enumerate(level.patches) if patch.proc == proc]
+        level = share.level
         with _BlockFile(folder / f"{name}.data", self.compression) as file:
             for variable in stored:
-                for position in owned:
+                for position in level.positions_of(proc):
                     for material, values in variable.values.items():
                         count = None
                         if variable.declaration.is_particle:
-                            if material not in shares:
+                            if material not in particles:
                                 raise ValueError(
                                     f"{variable.declaration.name}: no positions for material {material}"
                                 )
-                            values = shares[material].of(variable.declaration, values, position)
+                            values = particles[material].of(variable.declaration, values, position)
                             count = len(values)
-                        raw = variable.block(level, position, values)
+                        raw = variable.block(share, position, values)
                         file.add(variable.declaration, material, level.patches[position].id, raw, count)
         _write_lines(folder / f"{name}.xml", table_lines(file.entries))
 
@@ -170,9 +217,10 @@ class Tree:
         """Remove all other time steps, first from the table of contents, then from the disk."""
         gone = [timestep for timestep in self.index.timesteps if timestep not in timesteps]
         self.index.timesteps = list(timesteps)
-        self.save_index()
-        for timestep in gone:
-            shutil.rmtree((self.directory / timestep.href).parent, ignore_errors=True)
+        with together(self.ranks, self.directory):
+            self.save_index()
+            for timestep in gone if self.is_first else ():
+                shutil.rmtree((self.directory / timestep.href).parent, ignore_errors=True)
 
     def drop_after(self, step: int) -> None:
         """Remove the time steps later than `step`."""
@@ -206,6 +254,23 @@ def _positions(fields: Fields, label: str) -> Positions:
 
 
 @dataclass(frozen=True)
+class _Share:
+    """The patches of a level that are written here: those of one rank, or (None) all."""
+
+    level: Level
+    rank: int | None
+
+    @cached_property
+    def positions(self) -> list[int]:
+        """Their positions among the patches of the level."""
+        return self.level.positions_of(self.rank)
+
+    def box(self, container: str) -> Box:
+        """The box around what they store."""
+        return self.level.whole(container, rank=self.rank)
+
+
+@dataclass(frozen=True)
 class _StoredVariable:
     """A variable of a level with its values checked and of the stored type, materials ascending."""
 
@@ -214,38 +279,40 @@ class _StoredVariable:
 
     @classmethod
     def make(
-        cls, level: Level, variable: Variable, by_material: Mapping[int, npt.ArrayLike]
+        cls, share: _Share, variable: Variable, by_material: Mapping[int, npt.ArrayLike]
     ) -> _StoredVariable:
         values = {}
         for material in sorted(by_material):
             if material < 0:
                 raise ValueError(f"{variable.name}: material {material} on a level")
             given = np.asarray(by_material[material])
-            values[material] = variable.shaped(given, _outer_shape(level, variable, given))
+            values[material] = variable.shaped(given, _outer_shape(share, variable, given))
         return cls(variable, values)
 
-    def block(self, level: Level, position: int, values: np.ndarray) -> memoryview | bytes:
-        """Bytes of one patch; `values` are the patch's own particles, or the whole level's array."""
+    def block(self, share: _Share, position: int, values: np.ndarray) -> memoryview | bytes:
+        """Bytes of one patch; `values` are the patch's own particles, or the array over the share."""
         variable = self.declaration
         if variable.is_grid:
-            origin = level.whole(variable.container).low
-            return blocks.grid_bytes(values[level.extent(position, variable.container).within(origin)])
-        return blocks.particle_bytes(values[position] if variable.container == PER_PATCH else values)
+            box = share.level.extent(position, variable.container)
+            return blocks.grid_bytes(values[box.within(share.box(variable.container).low)])
+        if variable.container == PER_PATCH:
+            values = values[share.positions.index(position)]
+        return blocks.particle_bytes(values)
 
 
-def _outer_shape(level: Level, variable: Variable, given: np.ndarray) -> tuple[int, ...]:
-    """Shape that the values of a variable on a level must have, the element's own apart."""
+def _outer_shape(share: _Share, variable: Variable, given: np.ndarray) -> tuple[int, ...]:
+    """Shape that the values of a variable must have, the element's own apart."""
     if variable.is_grid:
-        return level.whole(variable.container).shape
+        return share.box(variable.container).shape
     if variable.container == PER_PATCH:
-        return (len(level.patches),)
+        return (len(share.positions),)
     if not variable.is_particle:
         raise ValueError(f"{variable.name}: a {variable.container} does not belong to a level")
     return given.shape[:1]
 
 
 @dataclass(frozen=True)
-class _Shares:
+class _Particles:
     """How the particles of a material are shared out among the patches of a level.
 
     `order` lists the particles patch by patch, in their own order within each (None: all are in the
@@ -256,7 +323,8 @@ class _Shares:
     bounds: np.ndarray
 
     @classmethod
-    def make(cls, level: Level, material: int, positions: npt.ArrayLike, folder: Path) -> _Shares:
+    def make(cls, share: _Share, material: int, positions: npt.ArrayLike, folder: Path) -> _Particles:
+        level = share.level
         points = np.asarray(positions, dtype=float).reshape(-1, 3)
         owners = level.nearest_patch(points)
         if (owners < 0).any():
@@ -266,6 +334,13 @@ class _Shares:
                 f"{np.count_nonzero(owners < 0)} particles of material {material} are nowhere on the grid, "
                 f"the first at {points[lost].tolist()}",
                 advice="positions that are not numbers come from an unstable run: try a smaller time step",
+            )
+        strange = ~np.isin(owners, share.positions)
+        if strange.any():
+            patch = level.patches[int(owners[np.argmax(strange)])]
+            raise ValueError(
+                f"{np.count_nonzero(strange)} particles of material {material} are not in the patches of rank "
+                f"{share.rank}, the first in patch {patch.id} of rank {patch.proc}"
             )
         counts = np.bincount(owners, minlength=len(level.patches))
         order = np.argsort(owners, kind="stable") if len(level.patches) > 1 else None

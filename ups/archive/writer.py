@@ -43,6 +43,7 @@ from ups.archive.errors import ArchiveError
 from ups.archive.index import ArchiveIndex, Listed, Restart, Timestep, read_index
 from ups.archive.layout import Grid
 from ups.archive.naming import point_link
+from ups.archive.ranks import ALONE, Ranks, together
 from ups.archive.reductions import ReductionFile, ReductionFormat
 from ups.archive.tree import Content, Fields, Positions, Tree, storing
 from ups.archive.variables import Variable
@@ -55,6 +56,11 @@ class ArchiveWriter:
 
     Every method that writes raises `ArchiveError` where the disk is full or may not be written; what
     the archive held before stays readable. Values of a wrong shape or kind raise ValueError.
+
+    Several ranks can write one archive, each the data of the patches that the grid gives it, the first all
+    else. Every rank then makes a writer of the same grid with the same ``ranks`` and calls every method,
+    with its own share of the values (see `Fields`); histories and global values count on the first only.
+    What fails on one rank raises on all.
 
     Attributes
     ----------
@@ -75,6 +81,7 @@ class ArchiveWriter:
     ) -> None:
         self.directory = directory
         self.reduction_format = reduction_format
+        self._ranks = output.ranks
         self._output = output
         self._checkpoints = checkpoints
         self._double_as_float = double_as_float
@@ -94,6 +101,7 @@ class ArchiveWriter:
         link: str | Path | None = None,
         reduction_format: ReductionFormat | None = None,
         restarted_from: tuple[str, int] | None = None,
+        ranks: Ranks = ALONE,
     ) -> ArchiveWriter:
         """Begin a new archive.
 
@@ -119,30 +127,27 @@ class ArchiveWriter:
             How histories are written; the default is every step, with its time.
         restarted_from
             Archive and step that the run goes on from, to be noted.
+        ranks
+            The ranks that write together, such as ``mpi4py.MPI.COMM_WORLD``; by default, this process alone.
         """
         directory = Path(directory)
-        with storing(directory, "create the archive"):
-            if not directory.is_dir() or any(directory.iterdir()):
-                directory.mkdir(parents=True)
-            text = input_xml.encode() if isinstance(input_xml, str) else input_xml
-            (directory / "input.xml").write_bytes(text)
-            for name, content in (originals or {}).items():
-                plain = Path(name).name
-                (directory / (f"{plain}.orig" if _RESERVED.fullmatch(plain) else plain)).write_bytes(content)
         processes = grid.number_of_processes
         index, checkpoint_index = ArchiveIndex.new(processes, title), ArchiveIndex.new(processes, title)
         if restarted_from is not None:
             index.restarts.append(Restart(*restarted_from))
         writer = cls(
             directory,
-            Tree(directory, index, grid, compression),
-            Tree(directory / "checkpoints", checkpoint_index, grid, compression),
+            Tree(directory, index, grid, compression, ranks),
+            Tree(directory / "checkpoints", checkpoint_index, grid, compression, ranks),
             double_as_float=double_as_float,
             reduction_format=reduction_format or ReductionFormat(),
         )
-        writer._output.save_index()
-        if link is not None:
-            point_link(Path(link), directory)
+        with together(ranks, directory):
+            if ranks.rank == 0:
+                _create_folder(directory, input_xml, originals or {})
+                writer._output.save_index()
+                if link is not None:
+                    point_link(Path(link), directory)
         return writer
 
     @classmethod
@@ -156,6 +161,7 @@ class ArchiveWriter:
         compression: str = "",
         double_as_float: bool = False,
         reduction_format: ReductionFormat | None = None,
+        ranks: Ranks = ALONE,
     ) -> ArchiveWriter:
         """Go on with an archive from a step that it has reached, usually that of a checkpoint.
 
@@ -170,31 +176,33 @@ class ArchiveWriter:
             Grid of the time steps to come.
         step, time
             The step that the run goes on from, and the time at its end.
-        compression, double_as_float, reduction_format
+        compression, double_as_float, reduction_format, ranks
             As for `create`.
         """
         directory = Path(directory)
-        index = read_index(directory / "index.xml")
-        index.restarts.append(Restart(directory.resolve().name, step))
         checkpoints = directory / "checkpoints"
-        exists = (checkpoints / "index.xml").exists()
-        checkpoint_index = read_index(checkpoints / "index.xml") if exists else ArchiveIndex.new(1)
+        with together(ranks, directory):  # all read before the first changes anything
+            index = read_index(directory / "index.xml")
+            exists = (checkpoints / "index.xml").exists()
+            checkpoint_index = read_index(checkpoints / "index.xml") if exists else ArchiveIndex.new(1)
+        index.restarts.append(Restart(directory.resolve().name, step))
         for contents in (index, checkpoint_index):
             contents.processes = max(contents.processes, grid.number_of_processes)
         writer = cls(
             directory,
-            Tree(directory, index, grid, compression),
-            Tree(checkpoints, checkpoint_index, grid, compression),
+            Tree(directory, index, grid, compression, ranks),
+            Tree(checkpoints, checkpoint_index, grid, compression, ranks),
             double_as_float=double_as_float,
             reduction_format=reduction_format or ReductionFormat(),
         )
         writer._output.drop_after(step)
         if exists:
             writer._checkpoints.drop_after(step)
-        for listed in index.globals_:
-            history = directory / Path(listed.href).name
-            if listed.href and history.exists():
-                reductions.cut_history(history, writer.reduction_format, step, time)
+        with together(ranks, directory):
+            for listed in index.globals_ if ranks.rank == 0 else ():
+                history = directory / Path(listed.href).name
+                if listed.href and history.exists():
+                    reductions.cut_history(history, writer.reduction_format, step, time)
         return writer
 
     def write_timestep(
@@ -228,7 +236,7 @@ class ArchiveWriter:
         levels, places = _by_level(fields), None if positions is None else _by_level(positions)
         if self._double_as_float:
             levels = [{_as_float(variable): values for variable, values in level.items()} for level in levels]
-        self.flush()
+        self._flush_together()
         self._output.write(Timestep(step, time, old_delt, ""), Content(levels, places, sections))
 
     def write_checkpoint(
@@ -253,7 +261,8 @@ class ArchiveWriter:
         global_values
             Values that belong to no patch, by variable and material (-1 for none), such as ``delT``.
         state
-            Anything else that a restart needs, as arrays by name; other programs do not see it.
+            Anything else that a restart needs, as arrays by name; other programs do not see it. Each rank
+            gets its own back from `Archive.state`.
         cycle
             How many checkpoints to keep; 0 keeps all.
         """
@@ -263,14 +272,19 @@ class ArchiveWriter:
         ]
         places = None if positions is None else _by_level(positions)
         content = Content(levels, places, sections, global_values or {}, state)
-        self.flush()
+        self._flush_together()
         tree = self._checkpoints
-        with storing(tree.directory, "create the folder of checkpoints"):
-            tree.directory.mkdir(exist_ok=True)
+        with (
+            together(self._ranks, tree.directory),
+            storing(tree.directory, "create the folder of checkpoints"),
+        ):
+            if tree.is_first:
+                tree.directory.mkdir(exist_ok=True)
         tree.write(Timestep(step, time, old_delt, ""), content)
         if 0 < cycle < len(tree.index.timesteps):
-            with storing(tree.directory, "copy the table of contents"):
-                shutil.copyfile(tree.directory / "index.xml", tree.directory / "index_backup.xml")
+            with together(self._ranks, tree.directory), storing(tree.directory, "copy the table of contents"):
+                if tree.is_first:
+                    shutil.copyfile(tree.directory / "index.xml", tree.directory / "index_backup.xml")
             tree.keep(tree.index.timesteps[-cycle:])
 
     def append_reductions(
@@ -281,7 +295,7 @@ class ArchiveWriter:
         *,
         last: bool = False,
     ) -> None:
-        """Add a line to the history of each variable, where `reduction_format` wants the step.
+        """Add a line to the history of each variable, where `reduction_format` wants the step; on the first rank.
 
         Lines reach the disk with the next time step, checkpoint, `flush` or `close`.
 
@@ -294,7 +308,7 @@ class ArchiveWriter:
         last
             Whether the run ends with this step, which always gets a line.
         """
-        if not self.reduction_format.due(step, last):
+        if self._ranks.rank or not self.reduction_format.due(step, last):
             return
         prefix = self.reduction_format.prefix(step, time)
         for variable, by_material in values.items():
@@ -311,8 +325,12 @@ class ArchiveWriter:
             self._output.save_index()
         return history
 
+    def _flush_together(self) -> None:
+        with together(self._ranks, self.directory):
+            self.flush()
+
     def flush(self) -> None:
-        """Bring the histories on the disk up to date."""
+        """Bring the histories on the disk up to date; no rank waits for another."""
         for history in self._histories.values():
             history.flush()
 
@@ -335,6 +353,18 @@ class ArchiveWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _create_folder(directory: Path, input_xml: str | bytes, originals: Mapping[str, bytes]) -> None:
+    """Make the folder of an archive, with the deck in it."""
+    with storing(directory, "create the archive"):
+        if not directory.is_dir() or any(directory.iterdir()):
+            directory.mkdir(parents=True)
+        text = input_xml.encode() if isinstance(input_xml, str) else input_xml
+        (directory / "input.xml").write_bytes(text)
+        for name, content in originals.items():
+            plain = Path(name).name
+            (directory / (f"{plain}.orig" if _RESERVED.fullmatch(plain) else plain)).write_bytes(content)
 
 
 _M = TypeVar("_M", bound=Mapping[Any, Any])
