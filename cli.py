@@ -290,10 +290,10 @@ def _region(context: click.Context, option: click.Parameter, given: tuple[float,
 @click.option(
     "--region", type=float, nargs=6, callback=_region, metavar="X Y Z X Y Z", help="Only what is in this box."
 )
-@click.option("--glyphs", is_flag=True, help="Particles as boxes, deformed as their material is (VTK XML).")
 @click.option(
-    "--jobs", type=click.IntRange(min=1), default=1, help="Steps written at the same time (VTK XML)."
+    "--glyphs", is_flag=True, help="Particles as boxes, deformed as their material is (.pvd, .vtu)."
 )
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Threads (VTK XML); one a core.")
 def convert(
     archive: str,
     out: str,
@@ -303,12 +303,20 @@ def convert(
     every: int,
     region: Any,
     glyphs: bool,
-    jobs: int,
+    jobs: int | None,
 ) -> None:
-    """Convert ARCHIVE to OUT: name.pvd or a folder for ParaView, name.vtkhdf, name.csv, or name.npz.
+    """Convert ARCHIVE to OUT, whose suffix chooses the format.
+
+    \b
+    name.pvd, folder  series for ParaView: particles, and every level of the grid
+    name.vtp .vtu     particles only      name.vti  grid of one level only
+    name.vtm          particles and levels as blocks of one data set
+    name.vth          levels of the grid as an overlapping hierarchy (AMR)
+    name.vtkhdf       all time steps in one file
+    name.csv .npz     tables; NumPy arrays
 
     A variable may carry a measure: stress:vonMises, velocity:magnitude, deformationMeasure:strain.
-    """
+    """  # noqa: D301 - the mark that keeps click from filling the lines below it
     with _orderly():
         from ups.convert import convert as convert_archive
 

@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 _STEPS_KEPT = 16
 """Time steps whose tables are kept in memory."""
 
+PART = 1 << 16
+"""Particles that are worked on at a time where a step is to be streamed."""
+
 
 @dataclass(frozen=True)
 class GridField:
@@ -261,19 +264,36 @@ class Archive:
         if ":" in label:
             named = self.find(label)
             return _measured(self.particles(step, named.source.name, material, patch), named)
+        return _joined(
+            list(self._particle_blocks(step, label, material, patch)), self._declared(self._step(step), label)
+        )
+
+    def particle_parts(self, step: int, label: str, material: int) -> Iterator[np.ndarray]:
+        """Values of a particle variable of a material, `PART` particles or fewer at a time.
+
+        The parts follow each other as in `particles`; those of all variables of the material have the same
+        lengths. Of a mapped block only the present part is in memory, and measures are computed by the part.
+        """
+        named = self.find(label)
+        for block in self._particle_blocks(step, named.source.name, material, None):
+            for start in range(0, len(block), PART):
+                yield _measured(block[start : start + PART], named)
+
+    def _particle_blocks(
+        self, step: int, label: str, material: int | None, patch: int | None
+    ) -> Iterator[np.ndarray]:
+        """Blocks of a particle variable by material, level and patch."""
         stored = self._step(step)
-        variable = self._declared(stored, label)
+        self._declared(stored, label)
         there = self.materials(step, label)
         if material is not None and material not in there:
             raise self._absent(stored, label, material)
-        parts = []
         for index in there if material is None else [material]:
             for level in stored.levels:
                 entries = blocks_of(stored.table(level.index).entries.get(label, {}), index)
                 self._check_particles(stored, level, label, index, entries)
-                wanted = sorted(entries) if patch is None else sorted({patch} & set(entries))
-                parts += [stored.particle_block(level.index, entries[number]) for number in wanted]
-        return _joined(parts, variable)
+                for number in sorted(entries) if patch is None else sorted({patch} & set(entries)):
+                    yield stored.particle_block(level.index, entries[number])
 
     def grid_variable(self, step: int, label: str, material: int, level: int = 0) -> GridField:
         """Return a node, cell or face variable of a material, put together over the patches of a level.
@@ -297,7 +317,10 @@ class Archive:
             return GridField(found[0][1], whole, lattice, variable)
         first = found[0][1]
         fill = np.nan if first.dtype.kind == "f" else 0
-        values = np.full(whole.shape + first.shape[3:], fill, dtype=first.dtype)
+        trailing = first.shape[3:]
+        # x runs fastest in memory, as in the blocks and in other formats
+        stored_order = np.full((*whole.shape[::-1], *trailing), fill, dtype=first.dtype)
+        values = stored_order.transpose(2, 1, 0, *range(3, stored_order.ndim))
         for box, part in found:
             values[box.within(whole.low)] = part
         return GridField(values, whole, lattice, variable)

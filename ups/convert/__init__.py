@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -36,18 +37,18 @@ def convert(
     every: int = 1,
     region: Region | None = None,
     glyphs: bool = False,
-    jobs: int = 1,
+    jobs: int | None = None,
     progress: Progress | None = None,
 ) -> list[Path]:
-    """Convert an archive, one time step in memory at a time for each of the jobs.
+    """Convert an archive; of a time step no more is in memory than one variable on the grid, or its blocks.
 
     Parameters
     ----------
     archive_path
         The archive, or the folder of its checkpoints.
     out
-        Where to write; its suffix chooses the format: ``.pvd``, ``.vtkhdf``, ``.csv``, ``.npz``, or a
-        folder for VTK XML.
+        Where to write; its suffix chooses the format: ``.pvd`` or a folder for series of VTK XML, ``.vtp``,
+        ``.vtu``, ``.vti``, ``.vtm`` and ``.vth`` for one kind of it, ``.vtkhdf``, ``.csv``, ``.npz``.
         Files that are there are replaced.
     variables
         Labels, with or without ``p.`` and ``g.``, perhaps with measures (``stress:vonMises``); None for all.
@@ -62,7 +63,7 @@ def convert(
     glyphs
         Whether VTK XML holds the particles as boxes, deformed as their material is, and not as points.
     jobs
-        Time steps that VTK XML is written for at the same time.
+        Threads that write VTK XML; None for as many as there are processor cores to use.
     progress
         Called after each time step with the number done and the number of all.
 
@@ -79,10 +80,17 @@ def convert(
     out = Path(out)
     format_ = format_of(out)
     selection = Selection.make(Archive(archive_path), variables, materials, steps, every=every, region=region)
-    options = Options(jobs=jobs, glyphs=glyphs)
+    options = Options(jobs=jobs or _cores(), glyphs=glyphs)
     if progress is not None:
         options = replace(options, progress=progress)
     try:
         return format_.write(selection, out, options)
     except OSError as error:
         raise ArchiveError.from_os_error(out, "write the output", error) from error
+
+
+def _cores() -> int:
+    """Processor cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):  # not on every system
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

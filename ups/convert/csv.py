@@ -8,8 +8,9 @@ digits that give them back exactly.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
+from itertools import repeat
 from pathlib import Path
 from typing import IO
 
@@ -49,17 +50,21 @@ def components_of(values: np.ndarray) -> list[np.ndarray]:
     return list(as_rows(values).T)
 
 
-def _particle_columns(
+def _particle_rows(
     selection: Selection, step: int, time: float, named: Sequence[Variable]
-) -> list[np.ndarray]:
+) -> Iterator[list[np.ndarray]]:
+    """Columns of the particles of a time step, some rows at a time."""
     particles = selection.particles(step)
-    material, found = particles.material_indices, dict(particles.values())
-    count = len(material)
-    columns = [np.full(count, step), np.full(count, time), material, *components_of(particles.positions)]
-    for variable in named:
-        absent = np.full((count, *variable.element_type.shape), np.nan)
-        columns += components_of(found.get(variable, absent))
-    return columns
+    stored = particles.variables
+    parts = [particles.value_parts(v) if v in stored else repeat(None) for v in named]
+    places = zip(particles.material_parts(), particles.position_parts(), strict=True)
+    for (material, positions), *values in zip(places, *parts, strict=False):
+        count = len(material)
+        columns = [np.full(count, step), np.full(count, time), material, *components_of(positions)]
+        for variable, found in zip(named, values, strict=True):
+            absent = np.full((count, *variable.element_type.shape), np.nan)
+            columns += components_of(absent if found is None else found)
+        yield columns
 
 
 def _grid_columns(
@@ -118,7 +123,8 @@ def _write_step(
     on_grid: dict[str, list[Variable]],
 ) -> None:
     if "particles" in tables:
-        tables["particles"].extend(_particle_columns(selection, step, time, on_particles))
+        for columns in _particle_rows(selection, step, time, on_particles):
+            tables["particles"].extend(columns)
     for level in selection.archive.grid(step).levels if set(tables) - {"particles"} else ():
         grouped: dict[tuple[str, int], dict[Variable, GridField]] = {}
         for material, grid_field in selection.grid_fields(step, level.index):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import repeat
+
 import numpy as np
 
 from ups.archive import Archive, ArchiveError, Level
@@ -23,24 +26,35 @@ def particle_edges(archive: Archive, step: int, material: int, level: Level) -> 
     as thick as the layer, and in a deck of rotational symmetry its volume is that of a radian. Without F
     the box is not deformed; without a volume it is half a cell wide.
     """
+    return np.concatenate([np.empty((0, 3, 3)), *edge_parts(archive, step, material, level)])
+
+
+def edge_parts(archive: Archive, step: int, material: int, level: Level) -> Iterator[np.ndarray]:
+    """`particle_edges` in the parts of `Archive.particle_parts`."""
     cell = np.array(level.spacing)
     layered = _layered_axes(archive, step, material, level)
-    count = archive.particle_count(step, material)
-    deformation = np.broadcast_to(np.eye(3), (count, 3, 3))
-    if _is_stored(archive, step, DEFORMATION, material):
-        deformation = archive.particles(step, DEFORMATION, material)
-    if not _is_stored(archive, step, VOLUME, material) or layered.all():
-        return deformation * np.where(layered, cell, cell / 2.0)
-    volume = archive.particles(step, VOLUME, material)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        if layered[2] and _is_axisymmetric(archive):  # around the y axis
-            area = volume / positions_of(archive, step, material)[:, 0]
-            filled = np.abs(area / np.linalg.det(deformation[:, :2, :2])) / np.prod(cell[:2])
-        else:
-            filled = np.abs(volume / np.linalg.det(deformation)) / np.prod(cell)
-        share = filled ** (1.0 / np.count_nonzero(~layered))
-    share = np.where(np.isfinite(share), share, 0.0)
-    return deformation * np.where(layered, cell, share[:, None] * cell)[:, None, :]
+    around_axis = layered[2] and _is_axisymmetric(archive)
+
+    def parts(label: str) -> Iterator[np.ndarray | None]:
+        if _is_stored(archive, step, label, material):
+            return archive.particle_parts(step, label, material)
+        return repeat(None)
+
+    positions = archive.particle_parts(step, archive.index.particle_position, material)
+    for places, stored, volume in zip(positions, parts(DEFORMATION), parts(VOLUME), strict=False):
+        deformation = np.broadcast_to(np.eye(3), (len(places), 3, 3)) if stored is None else stored
+        if volume is None or layered.all():
+            yield deformation * np.where(layered, cell, cell / 2.0)
+            continue
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if around_axis:  # the y axis
+                area = volume / places[:, 0]
+                filled = np.abs(area / np.linalg.det(deformation[:, :2, :2])) / np.prod(cell[:2])
+            else:
+                filled = np.abs(volume / np.linalg.det(deformation)) / np.prod(cell)
+            share = filled ** (1.0 / np.count_nonzero(~layered))
+        share = np.where(np.isfinite(share), share, 0.0)
+        yield deformation * np.where(layered, cell, share[:, None] * cell)[:, None, :]
 
 
 def _is_stored(archive: Archive, step: int, label: str, material: int) -> bool:
@@ -65,10 +79,10 @@ def _layered_axes(archive: Archive, step: int, material: int, level: Level) -> n
     position = archive.index.particle_position
     if not single.any() or not _is_stored(archive, step, position, material):
         return np.zeros(3, dtype=bool)
-    positions = archive.particles(step, position, material)
-    if not len(positions):
-        return single
-    return single & (np.ptp(positions, axis=0) < 1e-6 * np.array(level.spacing))
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for places in archive.particle_parts(step, position, material):
+        low, high = np.minimum(low, places.min(axis=0)), np.maximum(high, places.max(axis=0))
+    return single & (high - low < 1e-6 * np.array(level.spacing))
 
 
 def box_corners(positions: np.ndarray, edges: np.ndarray) -> np.ndarray:

@@ -26,7 +26,7 @@ class Options:
     progress
         Called after each time step.
     jobs
-        Time steps that are worked on at the same time, where the format has a file for each.
+        Threads that work at the same time, where the format allows it: on time steps, or on parts of one.
     glyphs
         Whether particles become boxes, deformed as their material is, where the format can hold them.
     """

@@ -13,7 +13,7 @@ from ups.archive import Archive, ArchiveError, Box, GridField, Level, Timestep, 
 from ups.archive.layout import FloatVector
 from ups.archive.units import plain_name
 from ups.archive.variables import FACES, NODE
-from ups.convert.glyphs import particle_edges
+from ups.convert.glyphs import edge_parts
 
 
 def plain_title(label: str) -> str:
@@ -156,7 +156,8 @@ class Selection:
         """Values of the particles of one material that are in the region, shape (n, element...)."""
         if self.region is None:  # positions are not needed
             return self.archive.particles(step, label, material)
-        return self.particles(step).of_material(label, material)
+        variable = self.archive.find(label).declaration
+        return joined(self.particles(step).parts(label, material), variable)
 
     def particles(self, step: int) -> ParticleSet:
         """Particles of a time step."""
@@ -168,9 +169,10 @@ class Selection:
             )
         return ParticleSet(self, step, position, self.materials_of(step, position))
 
-    def cells(self, level: Level) -> Box:
-        """Cells of the interior of a level that are in the region; a box of no cells where there are none."""
-        return level.interior if self.region is None else _common(level.interior, self.region.cells(level))
+    def cells(self, level: Level, box: Box | None = None) -> Box:
+        """Cells of a box, by default the interior of a level, that are in the region; of no cells where none are."""
+        box = level.interior if box is None else box
+        return box if self.region is None else _common(box, self.region.cells(level))
 
     def cropped(self, found: GridField) -> GridField:
         """Part of a field that belongs to cells in the region, extra cells included."""
@@ -216,72 +218,84 @@ class ParticleSet:
     position_label: str
     materials: list[int]
 
-    @property
+    @cached_property
     def counts(self) -> list[int]:
         """Number of particles of each material."""
-        counts = []
-        for material in self.materials:
-            inside = self._inside[material]
-            every = self.selection.archive.particle_count(self.step, material)
-            counts.append(every if inside is None else int(np.count_nonzero(inside)))
-        return counts
+        return [sum(map(_count, self._kept[material])) for material in self.materials]
+
+    @property
+    def variables(self) -> list[Variable]:
+        """Selected particle variables that the step holds, apart from the positions."""
+        archive, position = self.selection.archive, self.position_label
+        return [
+            variable
+            for variable in self.selection.variables
+            if variable.is_particle
+            and variable.name != position
+            and archive.materials(self.step, variable.name)
+        ]
 
     @cached_property
-    def _inside(self) -> dict[int, np.ndarray | None]:
-        """Whether each particle is in the region, by material; None where all count."""
+    def _kept(self) -> dict[int, list[np.ndarray | int]]:
+        """By material and part, which particles are in the region; their number where all count."""
         region = self.selection.region
-        if region is None:
-            return dict.fromkeys(self.materials)
-        archive = self.selection.archive
-        return {m: region.holds(archive.particles(self.step, self.position_label, m)) for m in self.materials}
+        return {
+            material: [len(part) if region is None else region.holds(part) for part in self._stored(material)]
+            for material in self.materials
+        }
 
-    def _kept(self, material: int, values: np.ndarray) -> np.ndarray:
-        inside = self._inside[material]
-        return values if inside is None else values[inside]
+    def _stored(self, material: int, label: str | None = None) -> Iterator[np.ndarray]:
+        return self.selection.archive.particle_parts(self.step, label or self.position_label, material)
 
-    def of_material(self, label: str, material: int) -> np.ndarray:
-        """Values of one material, shape (n, element...)."""
-        return self._kept(material, self.selection.archive.particles(self.step, label, material))
+    def parts(self, label: str, material: int) -> Iterator[np.ndarray]:
+        """Values of one material, shape (n, element...), part by part."""
+        return _inside(self._stored(material, label), self._kept[material])
 
-    @property
-    def edges(self) -> np.ndarray:
-        """Edge vectors of the boxes that the particles fill, see `particle_edges`; shape (n, 3, 3)."""
+    def position_parts(self) -> Iterator[np.ndarray]:
+        """Positions of all particles, part by part; shapes (n, 3)."""
+        for material in self.materials:
+            yield from self.parts(self.position_label, material)
+
+    def edge_parts(self) -> Iterator[np.ndarray]:
+        """Edge vectors of the boxes that the particles fill, see `particle_edges`; shapes (n, 3, 3)."""
         archive = self.selection.archive
         level = archive.grid(self.step).levels[-1]
-        parts = [self._kept(m, particle_edges(archive, self.step, m, level)) for m in self.materials]
-        return np.concatenate([np.empty((0, 3, 3)), *parts])
+        for material in self.materials:
+            yield from _inside(edge_parts(archive, self.step, material, level), self._kept[material])
 
-    @property
-    def positions(self) -> np.ndarray:
-        """Positions, shape (n, 3)."""
-        return self._values(self.position_label, (3,), np.dtype(float))
+    def material_parts(self) -> Iterator[np.ndarray]:
+        """Material of each particle, part by part; shapes (n,)."""
+        for material in self.materials:
+            for kept in self._kept[material]:
+                yield np.full(_count(kept), material, dtype=np.int32)
 
-    @property
-    def material_indices(self) -> np.ndarray:
-        """Material of each particle, shape (n,)."""
-        return np.repeat(np.array(self.materials, dtype=np.int32), self.counts)
+    def value_parts(self, variable: Variable) -> Iterator[np.ndarray]:
+        """Values of a variable for all particles, part by part; shapes (n, element...).
 
-    def values(self) -> Iterator[tuple[Variable, np.ndarray]]:
-        """Selected variables apart from the positions, shape (n, element...).
-
-        Particles of materials that a variable is not stored for get NaN, or zero in an integer.
+        Particles of materials that it is not stored for get NaN, or zero in an integer.
         """
-        for variable in self.selection.variables:
-            if variable.is_particle and variable.name != self.position_label:
-                element = variable.element_type
-                if self.selection.archive.materials(self.step, variable.name):
-                    yield (
-                        variable,
-                        self._values(variable.name, element.shape, element.dtype.newbyteorder("=")),
-                    )
-
-    def _values(self, label: str, shape: tuple[int, ...], dtype: np.dtype) -> np.ndarray:
-        stored = self.selection.materials_of(self.step, label)
+        element = variable.element_type
+        dtype = element.dtype.newbyteorder("=")
         fill = np.nan if dtype.kind == "f" else 0
-        parts = [
-            self.of_material(label, material)
-            if material in stored
-            else np.full((count, *shape), fill, dtype=dtype)
-            for material, count in zip(self.materials, self.counts, strict=True)
-        ]
-        return parts[0] if len(parts) == 1 else np.concatenate([np.empty((0, *shape), dtype=dtype), *parts])
+        stored = self.selection.materials_of(self.step, variable.name)
+        for material in self.materials:
+            if material in stored:
+                yield from self.parts(variable.name, material)
+            else:
+                for kept in self._kept[material]:
+                    yield np.full((_count(kept), *element.shape), fill, dtype=dtype)
+
+
+def _count(kept: np.ndarray | int) -> int:
+    return kept if isinstance(kept, int) else int(np.count_nonzero(kept))
+
+
+def _inside(parts: Iterator[np.ndarray], kept: Sequence[np.ndarray | int]) -> Iterator[np.ndarray]:
+    for part, inside in zip(parts, kept, strict=True):
+        yield part if isinstance(inside, int) else part[inside]
+
+
+def joined(parts: Iterator[np.ndarray], variable: Variable) -> np.ndarray:
+    """Parts as one array."""
+    element = variable.element_type
+    return np.concatenate([np.empty((0, *element.shape), element.dtype.newbyteorder("=")), *parts])

@@ -7,7 +7,7 @@ Formats document, section "VTKHDF file format", version 2.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ from ups.archive import ArchiveError, Level
 from ups.archive.variables import NODE
 from ups.convert.registry import Format, Options, register
 from ups.convert.selection import ParticleSet, Selection, plain_title
-from ups.convert.vtk import interior_values
+from ups.convert.vtkpieces import interior_values
 
 _CHUNK = 1 << 16
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
@@ -38,6 +38,13 @@ class _Growing:
 
     def __init__(self, group: Any) -> None:
         self._group = group
+
+    def add_parts(self, name: str, parts: Iterable[np.ndarray], empty: np.ndarray) -> int:
+        """Append rows part by part, made like `empty` where there are none; return how many it had before."""
+        before = self.add(name, empty)
+        for part in parts:
+            self.add(name, part)
+        return before
 
     def add(self, name: str, values: np.ndarray) -> int:
         """Append rows to an array; return how many it had before."""
@@ -80,11 +87,16 @@ class _Particles:
         steps.add("NumberOfParts", np.array([len(counts)]))
         self._parts += len(counts)
         root.add("NumberOfPoints", counts)
-        steps.add("PointOffsets", np.array([root.add("Points", particles.positions)]))
+        first = root.add_parts("Points", particles.position_parts(), np.empty((0, 3)))
+        steps.add("PointOffsets", np.array([first]))
         self._add_cells(steps, counts)
-        arrays = {"material": particles.material_indices}
-        arrays |= {plain_title(variable.name): values for variable, values in particles.values()}
-        self._add_data(arrays)
+        self._add_data("material", particles.material_parts(), np.empty(0, np.int32))
+        for variable in particles.variables:
+            element = variable.element_type
+            width = (element.components,) if element.shape else ()
+            empty = np.empty((0, *width), element.dtype.newbyteorder("="))
+            rows = (part.reshape(-1, *width) for part in particles.value_parts(variable))
+            self._add_data(plain_title(variable.name), rows, empty)
         self._steps.attrs["NSteps"] = self._steps["Values"].shape[0]
 
     def _add_cells(self, steps: _Growing, counts: np.ndarray) -> None:
@@ -103,11 +115,9 @@ class _Particles:
         steps.add("CellOffsets", np.array([first_cells]))
         steps.add("ConnectivityIdOffsets", np.array([first_numbers]))
 
-    def _add_data(self, arrays: Mapping[str, np.ndarray]) -> None:
-        data, offsets = _Growing(self._root["PointData"]), _Growing(self._steps["PointDataOffsets"])
-        for name, values in arrays.items():
-            rows = values.reshape(len(values), -1) if values.ndim > 1 else values
-            offsets.add(name, np.array([data.add(name, rows)]))
+    def _add_data(self, name: str, parts: Iterable[np.ndarray], empty: np.ndarray) -> None:
+        first = _Growing(self._root["PointData"]).add_parts(name, parts, empty)
+        _Growing(self._steps["PointDataOffsets"]).add(name, np.array([first]))
 
 
 class _Image:
