@@ -1,31 +1,8 @@
-"""Archives that Uintah wrote, unpacked once, and small grids."""
-
-import tarfile
-from pathlib import Path
+"""Small grids, and archives begun on them."""
 
 import pytest
 
 from ups.archive import ArchiveWriter, Box, Grid
-
-SHARED = Path(__file__).parents[3].parent / "shared" / "archives"
-SUS_ARCHIVES = ("disks_sulsky", "disks_gzip_2ranks", "mpmice_two_levels")
-
-
-@pytest.fixture(scope="session")
-def sus(tmp_path_factory):
-    """Return the path of an archive written by sus, by name."""
-    folder = tmp_path_factory.mktemp("sus")
-
-    def unpack(name):
-        if not (folder / f"{name}.uda").exists():
-            packed = SHARED / f"{name}.uda.tar.gz"
-            if not packed.exists():
-                pytest.skip("the reference archives are not here")
-            with tarfile.open(packed) as tar:
-                tar.extractall(folder, filter="data")
-        return folder / f"{name}.uda"
-
-    return unpack
 
 
 @pytest.fixture

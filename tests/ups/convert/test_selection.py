@@ -119,6 +119,34 @@ def test_particles_as_deformed_boxes(growing, tmp_path, pyvista):
     assert corners[3] - corners[0] == pytest.approx(0.5 * SHEAR[:, 1])
 
 
+@pytest.mark.parametrize("suffix", [".vtp", ".vtu"])
+def test_particles_only(growing, tmp_path, pyvista, suffix):
+    assert convert(growing, tmp_path / f"a{suffix}", steps=[2]) == [tmp_path / f"a{suffix}"]
+    data = pyvista.read(tmp_path / f"a{suffix}")
+    assert data.points.tolist() == Archive(growing).particles(2, "p.x").tolist()
+    assert data["material"].tolist() == [0, 0, 0, 1, 1]
+    assert data.point_data.active_vectors_name is None
+    assert data.GetPointData().GetTensors().GetName() == "stress"
+    assert (data.n_cells, data.n_points) == (5, 5)
+    assert convert(growing, tmp_path / f"b{suffix}") == [tmp_path / "b.pvd"]
+    reader = pyvista.get_reader(tmp_path / "b.pvd")
+    reader.set_active_time_value(0.5)
+    assert reader.read()[0].n_points == 8
+    assert sorted(p.name for p in tmp_path.glob("b*")) == [
+        "b.pvd",
+        *(f"b_0000{s}{suffix}" for s in range(1, 6)),
+    ]
+
+
+def test_boxes_in_a_file_of_their_own(growing, tmp_path, pyvista):
+    convert(growing, tmp_path / "a.vtu", steps=[2], glyphs=True)
+    data = pyvista.read(tmp_path / "a.vtu")
+    assert data.n_cells == 5
+    assert data.compute_cell_sizes()["Volume"] == pytest.approx([0.125] * 5)
+    with pytest.raises(ArchiveError, match=r"boxes do not fit into this format; write a \.vtu or a \.pvd"):
+        convert(growing, tmp_path / "a.vtp", glyphs=True)
+
+
 @pytest.mark.parametrize(
     ("heights", "sides"), [((0.25,), (0.2, 0.2, 0.5)), ((0.125, 0.375), (0.02 ** (1 / 3),) * 3)]
 )

@@ -3,8 +3,6 @@
 import csv
 import io
 import math
-import tarfile
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +11,6 @@ from click.testing import CliRunner
 from cli import main
 from ups.archive import Archive, ArchiveError, ArchiveWriter, Box, Grid, Variable
 from ups.inspect.extract import along_line, at_point, extract, of_particle
-
-SHARED = Path(__file__).parents[3].parent / "shared" / "archives"
 
 
 @pytest.mark.parametrize("point", [(0.0, 0.0, 0.0), (2.0, 1.0, 0.5), (0.3, 0.77, 0.1), (1.5, 0.5, 0.5)])
@@ -129,13 +125,8 @@ def test_the_command(make, tmp_path):
     assert (bad.exit_code, "check the path" in bad.output) == (1, True)
 
 
-def test_the_numbers_that_lineextract_prints(tmp_path):
-    packed = SHARED / "disks_sulsky.uda.tar.gz"
-    if not packed.exists():
-        pytest.skip("the reference archives are not here")
-    with tarfile.open(packed) as tar:
-        tar.extractall(tmp_path, filter="data")
-    archive = Archive(tmp_path / "disks_sulsky.uda")
+def test_the_numbers_that_lineextract_prints(sus):
+    archive = Archive(sus("disks_sulsky"))
     # lineextract -v g.mass -m 1 -timestep 3 -istart 4 10 0 -iend 7 10 0
     found = along_line(archive, ["g.mass"], (0.2, 0.5, 0), (0.35, 0.5, 0), material=1, steps=[151])["g.mass"]
     expected = [

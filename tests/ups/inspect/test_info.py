@@ -1,7 +1,6 @@
 """What is said of an archive, against the numbers put into it and those that Uintah's puda prints."""
 
 import json
-import tarfile
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +10,6 @@ from click.testing import CliRunner
 from cli import main
 from ups.archive import ArchiveError
 from ups.inspect.info import render, summarize
-
-SHARED = Path(__file__).parents[3].parent / "shared" / "archives"
 
 
 def of(summary, name, material=0):
@@ -97,13 +94,8 @@ def test_what_is_no_archive_is_said(tmp_path):
     assert "no index.xml" in done.output
 
 
-def test_the_numbers_that_puda_prints(tmp_path):
-    packed = SHARED / "disks_sulsky.uda.tar.gz"
-    if not packed.exists():
-        pytest.skip("the reference archives are not here")
-    with tarfile.open(packed) as tar:
-        tar.extractall(tmp_path, filter="data")
-    summary = summarize(tmp_path / "disks_sulsky.uda", 1)
+def test_the_numbers_that_puda_prints(sus):
+    summary = summarize(sus("disks_sulsky"), 1)
     position = of(summary, "p.x")
     assert position.low == (6.3293515079129212e-02, 6.3293515079129212e-02, 1.2500000000000001e-02)
     assert position.high == (9.3670648492087083e-01, 9.3670648492087083e-01, 3.7500000000000006e-02)
