@@ -293,6 +293,9 @@ def _region(context: click.Context, option: click.Parameter, given: tuple[float,
 @click.option(
     "--glyphs", is_flag=True, help="Particles as boxes, deformed as their material is (.pvd, .vtu)."
 )
+@click.option(
+    "--alone", is_flag=True, help="Without the steps of earlier archives that the run went on from."
+)
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Threads (VTK XML); one a core.")
 def convert(
     archive: str,
@@ -303,6 +306,7 @@ def convert(
     every: int,
     region: Any,
     glyphs: bool,
+    alone: bool,
     jobs: int | None,
 ) -> None:
     """Convert ARCHIVE to OUT, whose suffix chooses the format.
@@ -330,6 +334,7 @@ def convert(
                 every=every,
                 region=region,
                 glyphs=glyphs,
+                alone=alone,
                 jobs=jobs,
                 progress=progress,
             )
@@ -438,6 +443,9 @@ def compare(
 @click.option("--material", type=int, metavar="INDEX", help="Material; 0, or that of the particle.")
 @click.option("--level", type=int, metavar="INDEX", help="Level; the finest that holds the place.")
 @click.option("--step", "steps", multiple=True, type=int, metavar="STEP", help="Only these; -1 is the last.")
+@click.option(
+    "--alone", is_flag=True, help="Without the steps of earlier archives that the run went on from."
+)
 @click.option("-o", "--output", type=click.Path(), help="The .csv to write; by default the terminal.")
 def extract(
     archive: str,
@@ -449,6 +457,7 @@ def extract(
     material: int | None,
     level: int | None,
     steps: tuple[int, ...],
+    alone: bool,
     output: str | None,
 ) -> None:
     """Write values of VARIABLES of ARCHIVE over time as a table: at a point, on a line, of a particle.
@@ -463,7 +472,7 @@ def extract(
 
         ends = None if line is None else ((line[0], line[1], line[2]), (line[3], line[4], line[5]))
         table = extract_table(
-            Archive(archive),
+            Archive(archive) if alone else Archive(archive).with_earlier_runs(),
             variables,
             point=point,
             line=ends,

@@ -114,6 +114,7 @@ class Archive:
         self.index: ArchiveIndex = read_index(self.path / "index.xml")
         self._stored: OrderedDict[int, StoredTimestep] = OrderedDict()
         self._lock = Lock()
+        self._histories: Mapping[str, Reduction] = _Histories(self)
 
     def __repr__(self) -> str:
         return f"Archive({str(self.path)!r}, {len(self.timesteps)} time steps)"
@@ -162,16 +163,26 @@ class Archive:
             message = error.args[0]
             raise ArchiveError(self.path, message, advice="" if "; " in message else advice) from None
 
-    @cached_property
+    @property
     def reductions(self) -> Mapping[str, Reduction]:
         """Histories by name, a material's with its index behind (``rho_1``); each read when taken."""
-        return _Histories(self)
+        return self._histories
 
     @cached_property
     def checkpoints(self) -> Archive | None:
         """The checkpoints, an archive by itself, or None where there are none."""
         folder = self.path / "checkpoints"
         return Archive(folder) if (folder / "index.xml").is_file() else None
+
+    def with_earlier_runs(self) -> Archive:
+        """Return this archive with what came before it, where its run was taken up from another archive.
+
+        Uintah's restart begins a new archive. The earlier ones, where they are still found where this one
+        says, or beside it, give the time steps and the lines of the histories up to its own.
+        """
+        from ups.archive.restarts import with_earlier_runs
+
+        return with_earlier_runs(self)
 
     def timestep(self, step: int) -> Timestep:
         """Stored time step of the number `step`, or counted from the last where negative."""

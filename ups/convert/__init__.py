@@ -37,6 +37,7 @@ def convert(
     every: int = 1,
     region: Region | None = None,
     glyphs: bool = False,
+    alone: bool = False,
     jobs: int | None = None,
     progress: Progress | None = None,
 ) -> list[Path]:
@@ -62,6 +63,8 @@ def convert(
         Box that particles and cells must be in; None for all.
     glyphs
         Whether VTK XML holds the particles as boxes, deformed as their material is, and not as points.
+    alone
+        Whether to leave out the time steps of earlier archives that the run was taken up from.
     jobs
         Threads that write VTK XML; None for as many as there are processor cores to use.
     progress
@@ -79,7 +82,8 @@ def convert(
     """
     out = Path(out)
     format_ = format_of(out)
-    selection = Selection.make(Archive(archive_path), variables, materials, steps, every=every, region=region)
+    archive = Archive(archive_path) if alone else Archive(archive_path).with_earlier_runs()
+    selection = Selection.make(archive, variables, materials, steps, every=every, region=region)
     options = Options(jobs=jobs or _cores(), glyphs=glyphs)
     if progress is not None:
         options = replace(options, progress=progress)
