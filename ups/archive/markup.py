@@ -12,10 +12,13 @@ from pathlib import Path
 
 from lxml import etree
 
+from ups.archive import checksums
 from ups.archive.errors import ArchiveError
 from ups.archive.layout import FloatVector, IntVector
 
 HEADER = '<?xml version="1.0" encoding="UTF-8"?>'
+
+_ATTEMPTS = 3
 
 _DAMAGED = "the archive is damaged or was cut off while it was written"
 
@@ -68,17 +71,22 @@ def parse(path: Path) -> etree._Element:
     Raises
     ------
     ArchiveError
-        Where the file cannot be read or is not well-formed, with its line.
+        Where the file cannot be read or is not well-formed, with its line, or has checksums that are not its.
     """
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False, huge_tree=True)
     try:
-        return etree.fromstring(path.read_bytes(), parser)
+        # a file and its sums may be replaced between one being read and the other
+        known = any(checksums.check(path, raw := path.read_bytes()) for _attempt in range(_ATTEMPTS))
+        root = etree.fromstring(raw, parser)
     except OSError as error:
         raise ArchiveError.from_os_error(path, "read the file", error) from error
     except etree.XMLSyntaxError as error:
         raise ArchiveError(
             path, f"not well-formed XML: {error.msg}", line=error.lineno, advice=_DAMAGED
         ) from error
+    if not known:
+        raise checksums.damaged(path, checksums.CHANGED)
+    return root
 
 
 class Node:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ups.archive import checksums
 from ups.archive.errors import ArchiveError
 from ups.archive.variables import GLOBAL_MATERIAL, Variable
 
@@ -68,10 +69,16 @@ class ReductionFile:
         self.path = path
         self._pending: list[str] = []
         try:
+            self._checksum = checksums.crc32(path.read_bytes() if path.exists() else b"")
             self._file = path.open("ab", buffering=0)
             self._size = self._file.seek(0, os.SEEK_END)
         except OSError as error:
             raise ArchiveError.from_os_error(path, "open the history", error) from error
+
+    @property
+    def covered(self) -> tuple[int, int]:
+        """Checksum and length of what is on the disk."""
+        return self._checksum, self._size
 
     def append(self, line: str) -> None:
         """Add a line, given without its end."""
@@ -96,6 +103,7 @@ class ReductionFile:
             os.ftruncate(self._file.fileno(), self._size)
             raise ArchiveError.from_os_error(self.path, "write the history", error) from error
         self._size += len(raw)
+        self._checksum = checksums.crc32(raw, self._checksum)
         self._pending.clear()
 
     def close(self) -> None:
@@ -104,6 +112,21 @@ class ReductionFile:
             self.flush()
         finally:
             self._file.close()
+
+
+def covered_by(path: Path) -> tuple[int, int]:
+    """Checksum and length of a history as it is.
+
+    Raises
+    ------
+    ArchiveError
+        Where it cannot be read.
+    """
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise ArchiveError.from_os_error(path, "read the history", error) from error
+    return checksums.crc32(raw), len(raw)
 
 
 def cut_history(path: Path, format_: ReductionFormat, step: int, time: float) -> None:
@@ -174,9 +197,12 @@ def read_history(path: Path, name: str, material: int) -> Reduction:
         Where the file cannot be read, a line is not numbers, or lines differ in length.
     """
     try:
-        text = path.read_text(encoding="ascii", errors="replace")
+        covered = checksums.of_history(path)  # first, as the file may grow
+        raw = path.read_bytes()
     except OSError as error:
         raise ArchiveError.from_os_error(path, "read the history", error) from error
+    checksums.check_history(path, raw, covered)
+    text = raw.decode("ascii", errors="replace")
     lines = text.split("\n")[:-1]
     rows = [_row(path, number, line) for number, line in enumerate(lines, 1) if line.strip()]
     for number, row in enumerate(rows, 1):

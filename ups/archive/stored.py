@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ups.archive import blocks
+from ups.archive import blocks, checksums
 from ups.archive.errors import ArchiveError
 from ups.archive.index import ArchiveIndex, Timestep
 from ups.archive.layout import Box, Level
@@ -27,7 +27,10 @@ def state_file(rank: int) -> str:
 
 
 _MAPPED_FROM = 1 << 20
-"""Blocks of at least this many bytes are mapped into memory, smaller ones read: a map takes a file handle."""
+"""Blocks of at least this many bytes are mapped into memory, smaller ones read: a map takes a file handle.
+
+What is read is held against its checksum; what is mapped only by `StoredTimestep.problems`, as it would be read.
+"""
 
 _CUT_OFF = "the archive is damaged or was cut off while it was written; other time steps may be whole"
 
@@ -187,6 +190,9 @@ class StoredTimestep:
 
     def _check(self, level: int, entry: Entry, values: bool) -> None:
         """Raise where a block is not whole; one of an unknown type is only looked for in its file."""
+        if values:
+            path = self._folder(level) / entry.filename
+            _verify(path, entry, self._stored(path, entry, entry.name))
         if ELEMENTS.get(entry.type_name.partition("<")[2].rstrip("> ")) is None:
             self._stored(self._folder(level) / entry.filename, entry, entry.name)
         elif values or not entry.compression:
@@ -282,12 +288,23 @@ class StoredTimestep:
                     raise ArchiveError(path, message, offset=entry.start, advice=_CUT_OFF)
                 if entry.end - entry.start < _MAPPED_FROM:
                     file.seek(entry.start)
-                    return file.read(entry.end - entry.start)
+                    raw = file.read(entry.end - entry.start)
+                    _verify(path, entry, raw)
+                    return raw
                 if path not in self._maps:
                     self._maps[path] = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
                 return memoryview(self._maps[path])[entry.start : entry.end]
         except OSError as error:
             raise ArchiveError.from_os_error(path, "read the data", error) from error
+
+
+def _verify(path: Path, entry: Entry, raw: memoryview | bytes) -> None:
+    """Raise where a block is not as its checksum says."""
+    if entry.checksum and checksums.text(checksums.crc32(raw)) != entry.checksum:
+        message = (
+            f"{entry.name} of material {entry.material}, patch {entry.patch} was changed after it was written"
+        )
+        raise ArchiveError(path, message, offset=entry.start, advice=_CUT_OFF)
 
 
 def _native(values: np.ndarray) -> np.ndarray:

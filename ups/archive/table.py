@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+from ups.archive import checksums
 from ups.archive.layout import IntVector
 from ups.archive.markup import HEADER, Node, leaf, triple
 
@@ -33,6 +34,8 @@ class Entry:
         Number of particles, or None where the block holds none.
     boundary_layer
         Extra layers that replace the level's own for this variable, or None.
+    checksum
+        Sum of the stored bytes as `checksums` writes it, or empty where it is not known.
     line
         Line of the table the entry was read from; 0 for a new one.
     """
@@ -47,6 +50,7 @@ class Entry:
     compression: str = ""
     particles: int | None = None
     boundary_layer: IntVector | None = None
+    checksum: str = ""
     line: int = 0
 
 
@@ -73,14 +77,16 @@ def table_lines(entries: Sequence[Entry]) -> list[str]:
 
 
 def read_table(path: Path) -> list[Entry]:
-    """Read the entries of a table.
+    """Read the entries of a table, with their checksums where these lie beside it.
 
     Raises
     ------
     ArchiveError
         Where the file is missing, damaged, or an entry lacks something or points outside its folder.
     """
-    return [_entry(node) for node in Node.root(path, "Uintah_Output").children("Variable")]
+    nodes = Node.root(path, "Uintah_Output").children("Variable")
+    sums = checksums.of_blocks(path, len(nodes))
+    return [replace(_entry(node), checksum=sum_) for node, sum_ in zip(nodes, sums, strict=True)]
 
 
 def _entry(node: Node) -> Entry:

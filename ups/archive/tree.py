@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 from lxml import etree
 
-from ups.archive import blocks
+from ups.archive import blocks, checksums
 from ups.archive.errors import ArchiveError
 from ups.archive.index import ArchiveIndex, Listed, Timestep
 from ups.archive.layout import Box, Grid, Level
@@ -97,8 +97,7 @@ class Tree:
             return
         path = self.directory / "index.xml"
         with storing(path, "write the table of contents"):
-            _write_lines(path.with_suffix(".partial"), self.index.lines())
-            path.with_suffix(".partial").replace(path)
+            replace_index(path, self.index)
 
     def write(self, timestep: Timestep, content: Content) -> None:
         """Store a time step, then name it in the table of contents."""
@@ -167,7 +166,7 @@ class Tree:
         lines = timestep_lines(
             timestep, self.grid, has_globals=bool(content.global_values), sections=content.sections
         )
-        _write_lines(partial / "timestep.xml", lines)
+        _write_xml(partial / "timestep.xml", lines)
         if folder.exists():  # complete, but the run ended before it was named
             shutil.rmtree(folder)
         partial.rename(folder)
@@ -197,14 +196,14 @@ class Tree:
                             count = len(values)
                         raw = variable.block(share, position, values)
                         file.add(variable.declaration, material, level.patches[position].id, raw, count)
-        _write_lines(folder / f"{name}.xml", table_lines(file.entries))
+        _write_xml(folder / f"{name}.xml", table_lines(file.entries), file.entries)
 
     def _write_globals(self, folder: Path, values: Fields) -> None:
         with _BlockFile(folder / "global.data", self.compression) as file:
             for variable, by_material in values.items():
                 for material, value in by_material.items():
                     file.add(variable, material, -1, blocks.particle_bytes(variable.shaped(value, ())), None)
-        _write_lines(folder / "global.xml", table_lines(file.entries))
+        _write_xml(folder / "global.xml", table_lines(file.entries), file.entries)
 
     def _list_variables(self, content: Content) -> None:
         for fields in content.levels:
@@ -227,8 +226,20 @@ class Tree:
         self.keep([timestep for timestep in self.index.timesteps if timestep.step <= step])
 
 
-def _write_lines(path: Path, lines: Sequence[str]) -> None:
-    path.write_bytes(("\n".join(lines) + "\n").encode())
+def replace_index(path: Path, index: ArchiveIndex) -> None:
+    """Write a table of contents, which is at any moment the old one or the new one, with its checksum."""
+    raw = ("\n".join(index.lines()) + "\n").encode()
+    checksums.save(path, raw, present=path.read_bytes() if path.exists() else None)
+    partial = path.with_suffix(".partial")
+    partial.write_bytes(raw)
+    partial.replace(path)
+
+
+def _write_xml(path: Path, lines: Sequence[str], entries: Sequence[Entry] = ()) -> None:
+    """Write an XML file, and beside it the checksums of it and of the blocks that it lists."""
+    raw = ("\n".join(lines) + "\n").encode()
+    path.write_bytes(raw)
+    checksums.save(path, raw, [entry.checksum for entry in entries])
 
 
 def _write_state(path: Path, state: Mapping[str, npt.ArrayLike]) -> None:
@@ -395,6 +406,7 @@ class _BlockFile:
                 filename=self._path.name,
                 compression=compression,
                 particles=particles,
+                checksum=checksums.text(checksums.crc32(raw)),
             )
         )
 

@@ -21,7 +21,7 @@ as a whole, name the step.
 ...     writer.write_checkpoint(
 ...         1, 0.1, 0.1, fields, global_values={DELT: {-1: 0.1}}, state={"order": [2, 0, 1]}
 ...     )
->>> sorted(path.name for path in folder.iterdir())
+>>> sorted(path.name for path in folder.iterdir() if path.suffix != ".crc32")
 ['KineticEnergy.dat', 'checkpoints', 'index.xml', 'input.xml', 't00001']
 """
 
@@ -38,7 +38,7 @@ from typing import Any, Self, TypeVar
 import numpy.typing as npt
 from lxml import etree
 
-from ups.archive import reductions
+from ups.archive import checksums, reductions
 from ups.archive.errors import ArchiveError
 from ups.archive.index import ArchiveIndex, Listed, Restart, Timestep, read_index
 from ups.archive.layout import Grid
@@ -48,7 +48,7 @@ from ups.archive.reductions import ReductionFile, ReductionFormat
 from ups.archive.tree import Content, Fields, Positions, Tree, storing
 from ups.archive.variables import Variable
 
-_RESERVED = re.compile(r"index\.xml|input\.xml|checkpoints|t\d+|.*\.dat|.*\.partial")
+_RESERVED = re.compile(r"index\.xml|input\.xml|checkpoints|t\d+|.*\.dat|.*\.crc32|.*\.partial")
 
 
 class ArchiveWriter:
@@ -86,6 +86,7 @@ class ArchiveWriter:
         self._checkpoints = checkpoints
         self._double_as_float = double_as_float
         self._histories: dict[str, ReductionFile] = {}
+        self._covered: dict[str, tuple[int, int]] = {}
 
     @classmethod
     def create(
@@ -199,10 +200,8 @@ class ArchiveWriter:
         if exists:
             writer._checkpoints.drop_after(step)
         with together(ranks, directory):
-            for listed in index.globals_ if ranks.rank == 0 else ():
-                history = directory / Path(listed.href).name
-                if listed.href and history.exists():
-                    reductions.cut_history(history, writer.reduction_format, step, time)
+            if ranks.rank == 0:
+                writer._cut_histories(step, time)
         return writer
 
     def write_timestep(
@@ -317,6 +316,22 @@ class ArchiveWriter:
                 history = self._histories.get(name) or self._open_history(variable, name)
                 history.append(prefix + reductions.value_text(variable, value))
 
+    def _cut_histories(self, step: int, time: float) -> None:
+        """Remove the lines of the histories that are later than a step."""
+        for listed in self._output.index.globals_:
+            path = self.directory / Path(listed.href).name
+            if listed.href and path.exists():
+                reductions.cut_history(path, self.reduction_format, step, time)
+                self._covered[path.name] = reductions.covered_by(path)
+        self._save_sums()
+
+    def _save_sums(self) -> None:
+        """Write the checksums of the histories, where there are any."""
+        self._covered |= {name: history.covered for name, history in self._histories.items()}
+        if self._covered:
+            with storing(self.directory, "write the checksums of the histories"):
+                checksums.save_histories(self.directory, self._covered)
+
     def _open_history(self, variable: Variable, name: str) -> ReductionFile:
         history = self._histories[name] = ReductionFile(self.directory / name)
         listed = Listed(variable.name, variable.type_name, href=name)
@@ -333,6 +348,8 @@ class ArchiveWriter:
         """Bring the histories on the disk up to date; no rank waits for another."""
         for history in self._histories.values():
             history.flush()
+        if self._histories:
+            self._save_sums()
 
     def close(self) -> None:
         """Bring the histories up to date and close their files; the archive is complete before, too."""
@@ -342,6 +359,8 @@ class ArchiveWriter:
                 history.close()
             except ArchiveError as error:
                 failures.append(error)
+        if self._histories and not failures:
+            self._save_sums()
         self._histories.clear()
         if failures:
             raise failures[0]

@@ -14,6 +14,7 @@ from ups.archive.markup import Node
 from ups.archive.reductions import ReductionFormat, cut_history, read_history
 from ups.archive.stored import StoredTimestep
 from ups.archive.table import Entry, read_table
+from ups.archive.tree import replace_index
 from ups.archive.variables import GLOBAL_MATERIAL
 
 _FOLDER = re.compile(r"t(\d{5,})")
@@ -206,11 +207,10 @@ def _repair_tree(folder: Path, *, optional: bool = False) -> list[str]:
 
 
 def _replace_index(folder: Path, index: ArchiveIndex) -> None:
-    current, new = folder / "index.xml", folder / "index.xml.partial"
-    new.write_text("\n".join(index.lines()) + "\n", encoding="utf-8")
+    current = folder / "index.xml"
     if current.exists():
-        current.replace(folder / _KEPT)
-    new.replace(current)
+        shutil.copyfile(current, folder / _KEPT)
+    replace_index(current, index)
 
 
 def _index_from_folders(folder: Path) -> ArchiveIndex:

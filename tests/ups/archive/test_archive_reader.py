@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from other_programs import without_checksums
 
 from ups.archive import Archive, ArchiveError, ArchiveWriter, Box, Grid, Level, Patch, Variable
 from ups.archive.variables import ELEMENTS
@@ -244,7 +245,7 @@ NORMAL = Variable("g.normal", "NCVariable", "Vector")
 ENERGY = Variable("KineticEnergy", "ReductionVariable", "double")
 
 
-def write_small(folder, compression=""):
+def write_small(folder, compression="", *, checksums=False):
     """Write two steps on two patches; the second material is empty on the left patch."""
     boxes = Box((0, 0, 0), (2, 1, 1)).split((2, 1, 1))
     grid = Grid.single_level(boxes, spacing=(1.0, 1.0, 1.0), extra_cells=(1, 0, 0))
@@ -267,7 +268,7 @@ def write_small(folder, compression=""):
             writer.write_checkpoint(
                 step, step / 10, 0.1, fields, global_values={DELT: {-1: 0.1}}, state=state
             )
-    return folder
+    return folder if checksums else without_checksums(folder)
 
 
 DELT = Variable("delT", "ReductionVariable", "double")
@@ -651,47 +652,6 @@ def test_a_compressed_block_cannot_fill_the_memory(tmp_path):
     data.with_suffix(".xml").write_text(re.sub(r"<was>\d+</end>", "", text))
     with pytest.raises(ArchiveError, match="gives 25 bytes where 24 are due"):
         Archive(tmp_path / "a").particles(1, "p.x", 0, patch=0)
-
-
-def outcome(path):
-    try:
-        return everything(path)
-    except ArchiveError:
-        return None
-
-
-@pytest.mark.parametrize("compression", ["", "gzip"])
-def test_a_file_cut_off_anywhere_is_a_diagnostic_or_whole(tmp_path, compression):
-    """Every file of one step and its table of contents, cut at many places."""
-    origin = write_small(tmp_path / "a", compression)
-    expected = everything(origin)
-    files = [origin / "index.xml", *sorted((origin / "t00001").glob("**/*.*")), origin / "KineticEnergy.dat"]
-    for file in files:
-        whole = file.read_bytes()
-        for length in {*range(0, len(whole), max(1, len(whole) // 40)), len(whole) - 1, len(whole) - 2}:
-            file.write_bytes(whole[:length])
-            found = outcome(origin)
-            cut_line = file.suffix == ".dat" and found is not None
-            assert found is None or same(found, expected) or cut_line, (file, length)
-        file.write_bytes(whole)
-
-
-def test_a_changed_byte_anywhere_never_ends_in_a_traceback(tmp_path):
-    origin = write_small(tmp_path / "a")
-    files = [
-        origin / "index.xml",
-        origin / "t00001" / "timestep.xml",
-        origin / "t00001" / "l0" / "p00000.xml",
-    ]
-    refused = 0
-    for file in [*files, origin / "KineticEnergy.dat"]:
-        whole = file.read_bytes()
-        for position in range(0, len(whole), max(1, len(whole) // 40)):
-            for byte in b"\x00<9-":
-                file.write_bytes(whole[:position] + bytes([byte]) + whole[position + 1 :])
-                refused += outcome(origin) is None
-        file.write_bytes(whole)
-    assert refused > 200
 
 
 def test_a_damaged_state_is_a_diagnostic(tmp_path):

@@ -343,10 +343,7 @@ def test_each_rank_has_its_own_files(create):
         writer.write_timestep(1, 0.1, 0.1, particle_fields())
     folder = writer.directory / "t00001" / "l0"
     assert sorted(path.name for path in folder.iterdir()) == [
-        "p00000.data",
-        "p00000.xml",
-        "p00001.data",
-        "p00001.xml",
+        f"p0000{rank}.{suffix}" for rank in (0, 1) for suffix in ("crc32", "data", "xml")
     ]
     assert {e["filename"] for e in entries(folder, "p00001")} == {"p00001.data"}
     assert {e["patch"] for e in entries(folder, "p00001")} == {"1"}
@@ -421,7 +418,8 @@ def test_the_deck_and_its_original_are_kept(grid, create):
         grid, originals={"input.xml.orig": b"<a/>", "deck/bar.ups": b"<b/>", "index.xml": b"<c/>"}
     ) as writer:
         pass
-    kept = {path.name: path.read_bytes() for path in writer.directory.iterdir() if path.name != "index.xml"}
+    own = {"index.xml", "index.crc32"}
+    kept = {path.name: path.read_bytes() for path in writer.directory.iterdir() if path.name not in own}
     assert kept == {
         "input.xml": b"<Uintah_specification/>\n",
         "input.xml.orig": b"<a/>",
@@ -439,6 +437,7 @@ def test_checkpoints_are_a_ring_in_alphabetical_order(grid, create):
             writer.write_checkpoint(step, step / 10, 0.1, fields, global_values=delt, state=state, cycle=2)
     folder = writer.directory / "checkpoints"
     assert sorted(path.name for path in folder.iterdir()) == [
+        "index.crc32",
         "index.xml",
         "index_backup.xml",
         "t00002",
@@ -506,7 +505,8 @@ def test_a_step_that_fails_leaves_nothing(grid, create):
         writer.write_timestep(1, 0.1, 0.1, particle_fields())
         with pytest.raises(ValueError, match=r"p\.volume has 2 values for 3 particles"):
             writer.write_timestep(2, 0.2, 0.1, {X: {0: POSITIONS[0]}, VOLUME: {0: np.zeros(2)}})
-    assert sorted(path.name for path in writer.directory.iterdir()) == ["index.xml", "input.xml", "t00001"]
+    left = sorted(path.name for path in writer.directory.iterdir())
+    assert left == ["index.crc32", "index.xml", "input.xml", "t00001"]
     assert [timestep.step for timestep in Archive(writer.directory).timesteps] == [1]
 
 
