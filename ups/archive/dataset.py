@@ -12,7 +12,7 @@ from ups.archive.layout import Level
 from ups.archive.measures import Named
 from ups.archive.tracks import IDENTITY
 from ups.archive.units import unit_of
-from ups.archive.variables import CELL, FACES, NODE, Variable
+from ups.archive.variables import CELL, FACES, NODE, ElementType, Variable
 
 if TYPE_CHECKING:
     from ups.archive.reader import Archive
@@ -71,7 +71,7 @@ class _Builder:
         """Return a lazy `xarray.Variable` of one variable."""
         declared = named.declaration
         element = declared.element_type
-        components = tuple(f"component_{i}" for i in range(len(element.shape)))
+        components = self._component_axes(element)
         attributes = {"units": named.unit, "long_name": declared.name}
         read: Callable[[int], np.ndarray]
         dimensions: tuple[str, ...]
@@ -92,6 +92,18 @@ class _Builder:
             read,
             attributes,
         )
+
+    def _component_axes(self, element: ElementType) -> tuple[str, ...]:
+        """Dimensions of an element: (component) of a vector, (row, column) of a matrix, else one of its own."""
+        if element.shape == (3, 3):
+            axes: tuple[str, ...] = ("row", "column")
+        else:
+            axes = ("component" if element.shape == (3,) else element.name.lower(),) * len(element.shape)
+        for axis, length in zip(axes, element.shape, strict=True):
+            names = list("XYZ") if length == 3 else list(element.component_names)
+            if names:
+                self.coordinates[axis] = (axis, names)
+        return axes
 
     def _grid_axes(self, declared: Variable, lattice: Level) -> tuple[tuple[str, ...], tuple[int, ...]]:
         box = lattice.whole(declared.container)
@@ -164,7 +176,7 @@ def _history(archive: Archive, name: str) -> dict[str, Any]:
     if not len(history.times) or np.isnan(history.times).any():
         return {}
     dimension = f"time_{name}"
-    components = ("component_0",) if history.values.ndim == 2 else ()
+    components = ("component" if history.values.shape[1:] == (3,) else "entry",) * (history.values.ndim - 1)
     return {
         name: ((dimension, *components), history.values, {"units": unit_of(name)}),
         dimension: (dimension, history.times, {"units": "s"}),

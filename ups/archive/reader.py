@@ -363,10 +363,11 @@ class Archive:
     def dataset(self, variables: Sequence[str] | None = None, material: int = 0, level: int = 0) -> Any:
         """Return an `xarray.Dataset` of one material and level, whose values are read when they are used.
 
-        Grid variables have the dimensions (time, x, y, z, component...); those at nodes, cell centres
+        Grid variables have the dimensions (time, x, y, z, ...); those at nodes, cell centres
         and faces have coordinates of their own (``x_node``, ``x_cell``, ``x_face``). Particle variables,
-        (time, particle, component...), are there where ``p.particleID`` is stored, and hold the particles
-        of the first time step. A history has a dimension of its own, ``time_KineticEnergy``.
+        (time, particle, ...), are there where ``p.particleID`` is stored, and hold the particles
+        of the first time step. Vectors have the dimension ``component``, matrices ``row`` and ``column``,
+        all labelled X, Y, Z. A history has a dimension of its own, ``time_KineticEnergy``.
 
         Parameters
         ----------

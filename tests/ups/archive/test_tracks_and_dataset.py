@@ -78,9 +78,9 @@ def test_dataset(archive):
     assert found["g.mass"].dims == ("time", "x_node", "y_node", "z_node")
     assert found["g.mass"].sel(time=0.5).isel(x_node=2, y_node=1, z_node=0).item() == 2
     assert found["x_node"].values[:2].tolist() == [-0.5, 0.0]
-    assert found["p.stress"].dims == ("time", "particle", "component_0", "component_1")
+    assert found["p.stress"].dims == ("time", "particle", "row", "column")
     assert found["p.stress"].attrs["units"] == "Pa"
-    assert found["p.stress"].sel(particle=7).isel(component_0=0, component_1=1).values.tolist() == [
+    assert found["p.stress"].sel(particle=7).sel(row="X", column="Y").values.tolist() == [
         71,
         72,
         73,
