@@ -400,6 +400,7 @@ class _ExitsWithOne(click.Command):
 @click.option("--ignore", multiple=True, metavar="LABEL", help="Not these variables.")
 @click.option("--levels", type=int, nargs=2, metavar="I J", help="Only these levels of FIRST and SECOND.")
 @click.option("--extra-cells", is_flag=True, help="Compare extra cells, too.")
+@click.option("--skip-unknown-types", is_flag=True, help="Pass over variables that cannot be read.")
 def compare(
     first: str,
     second: str,
@@ -410,11 +411,12 @@ def compare(
     ignore: tuple[str, ...],
     levels: tuple[int, int] | None,
     extra_cells: bool,
+    skip_unknown_types: bool,
 ) -> None:
     """Compare the archives FIRST and SECOND as Uintah's compare_uda does.
 
     A number differs where both tolerances are exceeded. Exit status: 0 equal, 2 tolerances exceeded,
-    5 not comparable, 1 wrong arguments.
+    5 not comparable, 255 type not known, 1 wrong arguments.
     """
     with _orderly():
         from ups.inspect.compare import Tolerances, compare_archives, render
@@ -428,6 +430,7 @@ def compare(
             ignore=ignore,
             levels=levels,
             extra_cells=extra_cells,
+            skip_unknown_types=skip_unknown_types,
         )
         click.echo(render(outcome))
         sys.exit(outcome.status)

@@ -94,6 +94,20 @@ def von_mises(stress: np.ndarray) -> np.ndarray:
     return np.sqrt(1.5) * norm(_deviator(stress))
 
 
+@_measure("triaxiality", _TENSORS, unit="1")
+def triaxiality(stress: np.ndarray) -> np.ndarray:
+    """Stress triaxiality, the mean stress over the von Mises stress: 1/3 in uniaxial tension."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return -pressure(stress) / von_mises(stress)
+
+
+@_measure("maxShear", _TENSORS)
+def largest_shear(tensor: np.ndarray) -> np.ndarray:
+    """Largest shear (Tresca), half the difference of the extreme principal values."""
+    principal = _principal(tensor)
+    return (principal[..., 2] - principal[..., 0]) / 2.0
+
+
 @_measure("maxPrincipal", _TENSORS)
 def largest_principal(tensor: np.ndarray) -> np.ndarray:
     """Largest principal value of the symmetric part."""
@@ -122,6 +136,22 @@ def determinant(deformation_gradient: np.ndarray) -> np.ndarray:
 def green_lagrange_strain(deformation_gradient: np.ndarray) -> np.ndarray:
     """Green-Lagrange strain (F^T F - I)/2 of the deformation gradient F."""
     return (_right_cauchy_green(deformation_gradient) - np.eye(3)) / 2.0
+
+
+@_measure("almansiStrain", _TENSORS, "Matrix3", unit="1")
+def almansi_strain(deformation_gradient: np.ndarray) -> np.ndarray:
+    """Euler-Almansi strain (I - F^-T F^-1)/2 of the deformation gradient F."""
+    sound = np.isfinite(deformation_gradient).all(axis=(-2, -1))
+    sound &= determinant(np.where(sound[..., None, None], deformation_gradient, np.eye(3))) != 0.0
+    inverse = np.linalg.inv(np.where(sound[..., None, None], deformation_gradient, np.eye(3)))
+    strain = (np.eye(3) - np.einsum("...ki,...kj->...ij", inverse, inverse)) / 2.0
+    return np.where(sound[..., None, None], strain, np.nan)
+
+
+@_measure("volumetricStrain", _TENSORS, unit="1")
+def volumetric_strain(deformation_gradient: np.ndarray) -> np.ndarray:
+    """Change of volume over the volume at the start, det F - 1 of the deformation gradient F."""
+    return determinant(deformation_gradient) - 1.0
 
 
 @_measure("logStrain", _TENSORS, "Matrix3", unit="1")

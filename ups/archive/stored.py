@@ -17,7 +17,7 @@ from ups.archive.errors import ArchiveError
 from ups.archive.index import ArchiveIndex, Timestep
 from ups.archive.layout import Box, Level
 from ups.archive.table import Entry, read_table
-from ups.archive.timestep import TimestepFile, read_timestep
+from ups.archive.timestep import TimestepFile, contradictions, read_timestep
 from ups.archive.variables import ELEMENTS, PARTICLE, Variable
 
 
@@ -144,9 +144,10 @@ class StoredTimestep:
         except ArchiveError as error:
             yield error
             return
-        if self.file.time is not None and not math.isclose(self.file.time, self.timestep.time, rel_tol=1e-6):
+        if self.file.time is not None and not math.isclose(self.file.time, self.timestep.time, rel_tol=1e-12):
             message = f"this is time {self.file.time:.9g}, but index.xml says {self.timestep.time:.9g}"
             yield ArchiveError(self.path, message, advice=_CUT_OFF)
+        yield from contradictions(self.path, self.file.grid)
         try:
             self.global_values()
         except ArchiveError as error:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 from ups.archive import checksums
 from ups.archive.layout import IntVector
-from ups.archive.markup import HEADER, Node, leaf, triple
+from ups.archive.markup import HEADER, Node, leaf, quoted, triple
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def table_lines(entries: Sequence[Entry]) -> list[str]:
     """Lines of the table that lists `entries`."""
     lines = [HEADER, "<Uintah_Output>"]
     for entry in entries:
-        lines.append(f"  <Variable type={quoteattr(entry.type_name, {'>': '&gt;'})}>")
+        lines.append(f"  <Variable type={quoted(entry.type_name)}>")
         lines += [
             leaf(2, "variable", entry.name),
             leaf(2, "index", entry.material),

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from xml.sax.saxutils import escape
 
+import numpy as np
 from lxml import etree
 
 from ups.archive.blocks import ByteOrder
 from ups.archive.errors import ArchiveError
 from ups.archive.index import BYTE_ORDERS, ArchiveIndex, Timestep, read_representation
-from ups.archive.layout import Box, Grid, Level, Patch
-from ups.archive.markup import HEADER, Node, attributes, leaf, number, triple
+from ups.archive.layout import Box, FloatVector, Grid, Level, Patch
+from ups.archive.markup import HEADER, Node, attributes, escape, leaf, number, triple
 from ups.archive.variables import CELL, NODE
 
 _BINARY_MARK = 0xDEADBEEF
@@ -168,6 +168,39 @@ def read_timestep(path: Path, index: ArchiveIndex, timestep: Timestep) -> Timest
     return TimestepFile(
         grid, BYTE_ORDERS[endianness], bits // 8, sections, None if time is None else time.real()
     )
+
+
+def contradictions(path: Path, grid: Grid) -> Iterator[ArchiveError]:
+    """What the ``timestep.xml`` at `path` says of its patches that does not follow from their cells.
+
+    Sizes, and positions of corners, which no reader needs; but a changed digit of an anchor or a spacing
+    is found by them.
+    """
+    described = Node.root(path, "Uintah_timestep").child("Grid")
+    for level, node in zip(
+        grid.levels, [] if described is None else described.children("Level"), strict=False
+    ):
+        counts = {"totalCells": level.total_cells}
+        yield from _unequal(node, counts, {}, level)
+        for position, patch in enumerate(node.children("Patch")):
+            stored = level.extent(position, CELL)
+            counts = {"totalCells": stored.size, "nnodes": level.extent(position, NODE).size}
+            corners = dict(zip(("lower", "upper"), level.bounds(stored), strict=True))
+            yield from _unequal(patch, counts, corners, level)
+
+
+def _unequal(
+    node: Node, counts: Mapping[str, int], corners: Mapping[str, FloatVector], level: Level
+) -> Iterator[ArchiveError]:
+    """Errors about children that are there and not as they are due."""
+    for tag, count in counts.items():
+        if (child := node.child(tag)) is not None and child.integer() != count:
+            yield child.error(f"<{tag}> is {child.text()} where the cells give {count}")
+    for tag, corner in corners.items():
+        child = node.child(tag)
+        slack = 1e-6 * np.array(level.spacing) + 1e-9 * np.abs(corner)
+        if child is not None and (np.abs(np.subtract(child.real_triple(), corner)) > slack).any():
+            yield child.error(f"<{tag}> is {child.text()} where the cells give {triple(corner)}")
 
 
 def _read_grid(node: Node) -> Grid:

@@ -18,7 +18,7 @@ from ups.archive import ArchiveError, Level
 from ups.archive.variables import NODE
 from ups.convert.registry import Format, Options, register
 from ups.convert.selection import ParticleSet, Selection, plain_title
-from ups.convert.vtkpieces import interior_values
+from ups.convert.vtkpieces import HIDDEN, hidden_cells, interior_values
 
 _CHUNK = 1 << 16
 _CELL_KINDS = ("Vertices", "Lines", "Polygons", "Strips")
@@ -125,6 +125,7 @@ class _Image:
 
     def __init__(self, file: Any, selection: Selection, level: Level) -> None:
         self._selection = selection
+        self._lattice = level.interior, level.spacing, level.anchor
         self._cells = selection.cells(level)
         self._root = _root(file, "ImageData")
         low, high = self._cells
@@ -139,8 +140,22 @@ class _Image:
             self._steps.create_group(f"{data}Offsets")
 
     def add(self, step: int, level: Level, time: float) -> None:
-        """Append a time step."""
+        """Append a time step.
+
+        Raises
+        ------
+        ArchiveError
+            Where the level is not as in the first step.
+        """
+        if (level.interior, level.spacing, level.anchor) != self._lattice:
+            message = f"level {level.index} is another grid at step {step} than in the first"
+            raise ArchiveError(self._selection.archive.path, message, advice="write a .pvd, or fewer steps")
         _Growing(self._steps).add("Values", np.array([time]))
+        hidden = hidden_cells(self._selection.archive.grid(step).levels, level, self._cells)
+        if hidden.any():
+            marks = (HIDDEN * hidden).astype(np.uint8).transpose(2, 1, 0)
+            before = _Growing(self._root["CellData"]).add("vtkGhostType", marks[None])
+            _Growing(self._steps["CellDataOffsets"]).add("vtkGhostType", np.array([before]))
         for material, found in self._selection.grid_fields(step, level.index):
             values = interior_values(found, self._cells)
             data = "PointData" if found.variable.container == NODE else "CellData"

@@ -19,7 +19,7 @@ from ups.convert.vtkxml import Array, counting, save
 _HEXAHEDRON, _VERTEX = 12, 1
 """VTK's numbers of these cells."""
 
-_HIDDEN = 32
+HIDDEN = 32
 """VTK's mark of a cell that is not shown."""
 
 
@@ -117,7 +117,7 @@ def write_grid(
         (nodes if at_nodes else inside).append(_array(variable, name, i * j * k, parts))
     level = fields.level
     if alone and (hidden := hidden_cells(fields.levels, level, cells)).any():
-        marks = (_HIDDEN * hidden).astype(np.uint8).transpose(2, 1, 0).reshape(-1)
+        marks = (HIDDEN * hidden).astype(np.uint8).transpose(2, 1, 0).reshape(-1)
         inside.append(Array("vtkGhostType", marks.dtype, marks.size, 1, lambda: [marks]))
     corner, ends = level.anchor, cells
     if not alone:

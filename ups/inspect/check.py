@@ -8,10 +8,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ups.archive import Archive, ArchiveError, Timestep
+import numpy as np
+
+from ups.archive import Archive, ArchiveError, Timestep, checksums
 from ups.archive.index import ArchiveIndex, Listed, read_index
 from ups.archive.markup import Node
-from ups.archive.reductions import ReductionFormat, cut_history, read_history
+from ups.archive.reductions import ReductionFormat, covered_by, cut_history, read_history
 from ups.archive.stored import StoredTimestep
 from ups.archive.table import Entry, read_table
 from ups.archive.tree import replace_index
@@ -91,8 +93,9 @@ def repair_archive(path: str | Path) -> list[str]:
     """Make an archive that was cut off readable up to its last whole step.
 
     ``index.xml`` is rewritten to list the time steps that are whole, and made anew where it cannot be
-    read; the old one stays as ``index.xml.damaged``. Unfinished files and lines are removed. Folders of
-    damaged time steps stay where they are, unlisted. Checkpoints are treated likewise.
+    read; the old one stays as ``index.xml.damaged``. Unfinished files and lines are removed; histories that are
+    not as their checksums say are kept as they are, and told. Folders of damaged time steps stay where they
+    are, unlisted. Checkpoints are treated likewise.
 
     Returns
     -------
@@ -156,13 +159,21 @@ def _history_problems(folder: Path, index: ArchiveIndex) -> list[ArchiveError]:
         if not listed.href:
             continue
         try:
-            read_history(path, listed.name, GLOBAL_MATERIAL)
+            history = read_history(path, listed.name, GLOBAL_MATERIAL)
         except ArchiveError as error:
             found.append(error)
             continue
+        if index.timesteps and _ends_early(history.times, index.timesteps[-1].time):
+            message = f"the history ends at time {history.times[-1]:.9g}, before the last time step"
+            found.append(ArchiveError(path, message, advice="what is missing is lost"))
         if _has_loose_end(path):
             found.append(ArchiveError(path, "the last line is unfinished", advice="cut it with --repair"))
     return found
+
+
+def _ends_early(times: np.ndarray, last: float) -> bool:
+    """Whether a history ends more than two of its longest intervals before a time."""
+    return len(times) > 1 and bool(times[-1] + 2.0 * np.diff(times).max() < last)
 
 
 def _has_loose_end(path: Path) -> bool:
@@ -203,6 +214,22 @@ def _repair_tree(folder: Path, *, optional: bool = False) -> list[str]:
         if _has_loose_end(path):
             cut_history(path, ReductionFormat(time_column=False), 0, 0.0)
             done.append(f"cut the unfinished last line of {path.name}")
+    return done + _accept_histories(folder)
+
+
+def _accept_histories(folder: Path) -> list[str]:
+    """Write the checksums of the histories anew where one is not as they say."""
+    if not (folder / checksums.HISTORIES).exists():
+        return []
+    done, covered = [], {}
+    for path in sorted(folder.glob("*.dat")):
+        covered[path.name] = covered_by(path)
+        try:
+            checksums.check_history(path, path.read_bytes(), checksums.of_history(path))
+        except ArchiveError as error:
+            done.append(f"kept {path.name} as it is: {error.message}")
+    if done:
+        checksums.save_histories(folder, covered)
     return done
 
 

@@ -21,7 +21,7 @@ from ups.archive import Archive, ArchiveError, Level, Timestep, Variable
 from ups.archive.tracks import IDENTITY, identity_label
 from ups.archive.variables import PER_PATCH
 
-EQUAL, TOLERANCE_EXCEEDED, NOT_COMPARABLE = 0, 2, 5
+EQUAL, TOLERANCE_EXCEEDED, NOT_COMPARABLE, UNSUPPORTED = 0, 2, 5, 255
 """Exit statuses of ``compare_uda``."""
 
 
@@ -97,6 +97,8 @@ class Comparison:
         The worst difference of each variable that exceeds the tolerances, the worst variable first.
     obstacles
         Why the archives cannot be compared, in whole or in part.
+    unsupported
+        Variables of both whose type cannot be read.
     compared
         How many numbers were compared.
     largest
@@ -105,15 +107,18 @@ class Comparison:
 
     differences: list[Difference] = field(default_factory=list)
     obstacles: list[str] = field(default_factory=list)
+    unsupported: list[str] = field(default_factory=list)
     compared: int = 0
     largest: tuple[float, float] = (0.0, 0.0)
 
     @property
     def status(self) -> int:
-        """Exit status: 2 where tolerances are exceeded, else 5 where something cannot be compared, else 0."""
+        """Exit status: 2 for tolerances exceeded, else 5 for what cannot be compared, 255 read, else 0."""
         if self.differences:
             return TOLERANCE_EXCEEDED
-        return NOT_COMPARABLE if self.obstacles else EQUAL
+        if self.obstacles:
+            return NOT_COMPARABLE
+        return UNSUPPORTED if self.unsupported else EQUAL
 
 
 class _ObstacleError(Exception):
@@ -141,6 +146,7 @@ def compare_archives(
     ignore: Collection[str] = (),
     levels: tuple[int, int] | None = None,
     extra_cells: bool = False,
+    skip_unknown_types: bool = False,
 ) -> Comparison:
     """Compare two archives.
 
@@ -159,6 +165,8 @@ def compare_archives(
         One level of each archive to compare; all with their like where None.
     extra_cells
         Whether extra cells are compared, too.
+    skip_unknown_types
+        Whether variables of types that cannot be read are passed over.
 
     Raises
     ------
@@ -171,6 +179,8 @@ def compare_archives(
             archives[0].find(name)  # says what there is
     task = _Task(archives, tolerances or Tolerances(), levels, extra_cells)
     task.run(variables, ignore)
+    if skip_unknown_types:
+        task.outcome.unsupported.clear()
     return task.outcome
 
 
@@ -236,7 +246,7 @@ class _Task:
             if ours != theirs:
                 self.outcome.obstacles.append(f"{name} is a {ours} here, a {theirs} there")
             elif name in self.archives[0].unsupported:
-                self.outcome.obstacles.append(f"{name} is a {ours}, which cannot be read")
+                self.outcome.unsupported.append(f"{name} is a {ours}, which cannot be read")
             else:
                 common.append(self.archives[0].variables[name])
         return common
@@ -471,7 +481,7 @@ def _differences(pair: _Pair) -> tuple[np.ndarray, np.ndarray]:
 def render(comparison: Comparison) -> str:
     """Return the outcome as text for a terminal."""
     lines = [str(difference) for difference in comparison.differences]
-    lines += [f"not comparable: {obstacle}" for obstacle in comparison.obstacles]
+    lines += [f"not comparable: {obstacle}" for obstacle in comparison.obstacles + comparison.unsupported]
     absolute, relative = comparison.largest
     lines.append(
         f"{comparison.compared} numbers compared; largest difference {absolute:.3g} absolute, {relative:.3g} relative"

@@ -29,6 +29,10 @@ def test_simple_states_of_stress():
     shear = np.array([[0, 2.0, 0], [2, 0, 0], [0, 0, 0]])
     assert value("vonMises", shear) == pytest.approx(2 * np.sqrt(3))
     assert [value(f"{which}Principal", shear) for which in ("max", "mid", "min")] == pytest.approx([2, 0, -2])
+    assert value("triaxiality", tension) == pytest.approx(1 / 3)
+    assert value("triaxiality", shear) == pytest.approx(0)
+    assert value("maxShear", tension) == pytest.approx(3.5)
+    assert value("maxShear", shear) == pytest.approx(2)
     assert value("vonMises", -5 * np.eye(3)) == pytest.approx(0, abs=1e-14)
     assert value("pressure", -5 * np.eye(3)) == pytest.approx(5)
 
@@ -50,6 +54,10 @@ def test_strains_of_a_stretched_and_turned_body():
     deviator = logarithmic - logarithmic.mean()
     assert value("equivalentStrain", deformation) == pytest.approx(np.sqrt(2 / 3 * (deviator**2).sum()))
     assert value("determinant", deformation) == pytest.approx(stretches.prod())
+    assert value("volumetricStrain", deformation) == pytest.approx(stretches.prod() - 1)
+    turned = rotation(0.7)
+    almansi = turned @ np.diag((1 - stretches**-2) / 2) @ turned.T
+    assert value("almansiStrain", deformation) == pytest.approx(almansi, abs=1e-14)
 
 
 def test_the_rate_of_simple_shear():
@@ -60,10 +68,11 @@ def test_the_rate_of_simple_shear():
 
 def test_numbers_that_are_not_finite_stay_so():
     tensors = np.stack([np.eye(3), np.full((3, 3), np.nan)])
-    for name in ("vonMises", "maxPrincipal", "equivalentStrain"):
+    assert np.isnan(value("almansiStrain", np.zeros((3, 3)))).all()
+    for name in ("vonMises", "maxPrincipal", "equivalentStrain", "almansiStrain", "maxShear"):
         found = value(name, tensors)
-        assert np.isfinite(found[0])
-        assert np.isnan(found[1])
+        assert np.isfinite(found[0]).all()
+        assert np.isnan(found[1]).all()
 
 
 def test_temperatures():

@@ -181,3 +181,79 @@ def test_the_command(make):
     repaired = CliRunner().invoke(main, ["check", str(archive), "--repair"])
     assert repaired.exit_code == 0
     assert repaired.output.endswith("2 whole time steps, 0 damaged\n")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "<anchor>[0, 0, 0]",
+            "<anchor>[0, 4, 0]",
+            "<lower> is [-0.5, -0.5, 0] where the cells give [-0.5, 3.5, 0]",
+        ),
+        (
+            "<cellspacing>[0.5, ",
+            "<cellspacing>[0.25, ",
+            "<lower> is [-0.5, -0.5, 0] where the cells give [-0.25",
+        ),
+        ("<nnodes>30", "<nnodes>31", "<nnodes> is 31 where the cells give 30"),
+        ("<totalCells>24", "<totalCells>42", "<totalCells> is 42 where the cells give 24"),
+    ],
+)
+def test_a_changed_number_of_the_grid_is_found_without_checksums(make, old, new, message):
+    archive = without_checksums(make())
+    file = archive / "t00004" / "timestep.xml"
+    assert old in file.read_text()
+    file.write_text(file.read_text().replace(old, new, 1))
+    health = check_archive(archive)
+    assert health.damaged == [4]
+    assert any(message in str(problem) for problem in health.problems)
+
+
+def test_a_history_that_ends_early_is_named(make):
+    archive = without_checksums(make(steps=(1, 2, 3, 4, 5, 6)))
+    file = archive / "KineticEnergy.dat"
+    file.write_text("".join(file.read_text().splitlines(keepends=True)[:4]))
+    assert check_archive(archive).is_sound  # two lines may be thinned out
+    file.write_text("".join(file.read_text().splitlines(keepends=True)[:3]))
+    (problem,) = check_archive(archive).problems
+    assert "the history ends at time 0.375, before the last time step" in str(problem)
+
+
+def test_checksums_tell_which_file_was_changed(make):
+    archive = make()
+    before = readable(archive)
+    file = archive / "t00004" / "timestep.xml"
+    file.write_text(file.read_text().replace("<anchor>[0, 0, 0]", "<anchor>[0, 4, 0]"))
+    (problem,) = check_archive(archive).problems
+    assert problem.path == file
+    assert "changed or damaged after it was written" in str(problem)
+    assert repair_archive(archive) == [f"took step 4 off the list: {problem.message}"]
+    assert check_archive(archive).is_sound
+    after = readable(archive)
+    assert {key[0] for key in after} == {1, 9}
+    assert all(np.array_equal(values, before[key]) for key, values in after.items())
+
+
+def test_a_changed_table_of_contents_is_made_anew(make):
+    archive = make()
+    before = readable(archive)
+    index = archive / "index.xml"
+    index.write_text(index.read_text().replace('time="0.5"', 'time="0.6"'))
+    with pytest.raises(ArchiveError, match=r"changed or damaged .* ups check --repair makes"):
+        Archive(archive)
+    assert repair_archive(archive)[0].startswith("made index.xml anew, as the file was changed")
+    assert check_archive(archive).is_sound
+    after = readable(archive)
+    assert set(after) == set(before)
+    assert [timestep.time for timestep in Archive(archive).timesteps] == [1 / 8, 4 / 8, 9 / 8]
+
+
+def test_a_history_cut_in_the_middle_is_repaired_to_what_is_left(make):
+    archive = make(steps=(1, 2, 3))
+    file = archive / "KineticEnergy.dat"
+    file.write_bytes(file.read_bytes()[:-5])
+    assert "the history ends at byte" in str(check_archive(archive).problems[0])
+    assert any("KineticEnergy.dat" in action for action in repair_archive(archive))
+    assert check_archive(archive).is_sound
+    assert len(Archive(archive).reductions["KineticEnergy"].values) == 2

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from other_programs import without_checksums
 
 from cli import main
 from ups.archive import ArchiveError, Variable
-from ups.inspect.compare import Tolerances, compare_archives
+from ups.inspect.compare import Tolerances, compare_archives, render
 
 COMPARE_UDA = os.environ.get("UINTAH_COMPARE_UDA") or shutil.which("compare_uda")
 
@@ -178,6 +179,21 @@ def test_exit_statuses_of_the_command(make):
     assert status(a) == 1
     assert status(a, b, "--rel-tolerance", "-1") == 1
     assert status(a, "nowhere") == 1
+
+
+def test_a_type_that_cannot_be_read_has_a_status_of_its_own(make):
+    paths = without_checksums(make("a")), without_checksums(make("b"))
+    for path in paths:
+        for file in [path / "index.xml", *path.glob("t*/l0/p*.xml")]:
+            text = file.read_text().replace("CCVariable&lt;double", "CCVariable&lt;Quaternion")
+            file.write_text(text)
+    found = compare_archives(*paths)
+    assert (found.status, found.compared > 0) == (255, True)
+    assert found.unsupported == ["press_CC is a CCVariable<Quaternion>, which cannot be read"]
+    assert "not comparable: press_CC" in render(found)
+    assert compare_archives(*paths, skip_unknown_types=True).status == 0
+    compared = CliRunner().invoke(main, ["compare", *map(str, paths), "--skip-unknown-types"])
+    assert compared.exit_code == 0
 
 
 @pytest.mark.skipif(COMPARE_UDA is None, reason="Uintah's compare_uda is not here")
