@@ -14,6 +14,9 @@ BYTE_ORDERS: dict[str, ByteOrder] = {"little_endian": "<", "big_endian": ">"}
 """numpy's sign for Uintah's name of a byte order."""
 
 
+_LONGEST_TITLE = 1000  # Uintah's scanners read lines of up to 4094 characters, references included
+
+
 @dataclass(frozen=True)
 class Timestep:
     """One stored time step.
@@ -95,7 +98,8 @@ class ArchiveIndex:
     @classmethod
     def new(cls, processes: int, title: str = "") -> ArchiveIndex:
         """Contents of an archive that holds nothing yet, by the present user, now."""
-        return cls(processes=processes, title=title.strip(), username=_user(), date=time.asctime())
+        short = " ".join(title.split())[:_LONGEST_TITLE]
+        return cls(processes=processes, title=short, username=_user(), date=time.asctime())
 
     def lines(self) -> list[str]:
         """Lines of ``index.xml``, in the order and form that Uintah's scanners need."""

@@ -234,7 +234,7 @@ class Archive:
 
     def materials(self, step: int, label: str | None = None, level: int | None = None) -> list[int]:
         """Materials of one variable (or of a measure of one), or of all, on one level, or on all."""
-        label = None if label is None else label.partition(":")[0]
+        label = None if label is None else self._source(label)
         stored = self._step(step)
         tables = [stored.table(lattice.index) for lattice in stored.levels if level in (None, lattice.index)]
         return sorted(
@@ -266,13 +266,13 @@ class Archive:
         step
             Number of the time step.
         label
-            Label of the variable, perhaps with a measure: ``p.stress:vonMises``.
+            Label of the variable, with or without its prefix, perhaps with a measure: ``p.stress:vonMises``.
         material
             Material, or None for all that the variable is stored for.
         patch
             Number of the patch, or None for all.
         """
-        if ":" in label:
+        if self._source(label) != label:
             named = self.find(label)
             return _measured(self.particles(step, named.source.name, material, patch), named)
         return _joined(
@@ -312,7 +312,7 @@ class Archive:
         The array may be a read-only view of the file where there is only one patch. The label may name a
         measure: ``g.stressFS:vonMises``.
         """
-        if ":" in label:
+        if self._source(label) != label:
             named = self.find(label)
             stored_field = self.grid_variable(step, named.source.name, material, level)
             values = _measured(stored_field.values, named)
@@ -451,6 +451,15 @@ class Archive:
                 raise ArchiveError(
                     stored.path, message, advice="the archive is damaged; try another time step"
                 )
+
+    def _source(self, name: str) -> str:
+        """Label of the variable that a name stands for; the name itself where there is none."""
+        if name in self.variables or name in self.unsupported:
+            return name
+        try:
+            return find(name, self.variables).source.name
+        except LookupError:
+            return name.partition(":")[0]
 
     def _declared(self, stored: StoredTimestep, label: str) -> Variable:
         for level in stored.levels:

@@ -173,6 +173,13 @@ def test_an_odd_user_name_does_not_break_the_scanner(grid, create, monkeypatch, 
     assert meta["username"] == {"": "unknown", "  ": "unknown", "a<b": "a&lt;b", "x\ny": "x y"}[name]
 
 
+def test_a_long_title_does_not_break_the_scanner(grid, create):
+    with create(grid, title="& " * 5000) as writer:
+        pass
+    _scanner, meta = scan_index(writer.directory / "index.xml")
+    assert meta["title"].startswith("&amp; &amp;")
+
+
 def test_a_user_without_a_name_is_unknown(grid, create, monkeypatch):
     def nobody():
         raise KeyError("uid not found")

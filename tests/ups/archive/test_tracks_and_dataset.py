@@ -53,6 +53,16 @@ def test_follow(archive):
     assert archive.follow("p.color", [9, 3]).values.tolist() == [[9, 3], [9, 3], [0, 3]]
 
 
+def test_names_without_their_prefix(archive):
+    assert archive.follow("stress", [9, 5]).values[0, :, 0, 0].tolist() == [91, 51]
+    assert archive.follow("stress:XY", [5]).values[:, 0].tolist() == [51, 52, 53]
+    assert np.array_equal(archive.particles(1, "stress"), archive.particles(1, "p.stress"))
+    assert archive.materials(1, "stress:vonMises") == archive.materials(1, "mass") == [0]
+    assert archive.grid_variable(2, "mass", 0).values.max() == 2.0
+    with pytest.raises(ArchiveError, match=r"did you mean stress\?"):
+        archive.follow("stres", [5])
+
+
 def test_ups_open_gives_the_archive(archive):
     opened = ups.open(archive.path)
     assert opened.particles(-1, "p.stress:XX").tolist() == archive.particles(3, "p.stress")[:, 0, 0].tolist()
