@@ -318,6 +318,7 @@ def convert(
     name.vth          levels of the grid as an overlapping hierarchy (AMR)
     name.vtkhdf       all time steps in one file
     name.csv .npz     tables; NumPy arrays
+    name.uda          an archive again: fewer steps or variables, several runs in one
 
     A variable may carry a measure: stress:vonMises, velocity:magnitude, deformationMeasure:strain.
     """  # noqa: D301 - the mark that keeps click from filling the lines below it

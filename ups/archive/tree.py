@@ -67,24 +67,29 @@ class Tree:
 
     Several ranks write it together, each the data of its own patches, the first all else. One alone writes
     the data of every patch, whichever rank the grid says that it belongs to.
-
-    Raises
-    ------
-    ValueError
-        Where several ranks write and a patch belongs to none of them.
     """
 
     def __init__(
         self, directory: Path, index: ArchiveIndex, grid: Grid, compression: str, ranks: Ranks
     ) -> None:
-        if 1 < ranks.size < grid.number_of_processes:
-            raise ValueError(f"{ranks.size} ranks write patches of {grid.number_of_processes}")
         self.directory = directory
         self.index = index
-        self.grid = grid
         self.compression = compression
         self.ranks = ranks
+        self.grid = grid
         self._own = ranks.rank if ranks.size > 1 else None  # None for all
+
+    @property
+    def grid(self) -> Grid:
+        """Grid of the time steps to come; ValueError where several ranks write and one of its patches has none."""
+        return self._grid
+
+    @grid.setter
+    def grid(self, grid: Grid) -> None:
+        if 1 < self.ranks.size < grid.number_of_processes:
+            raise ValueError(f"{self.ranks.size} ranks write patches of {grid.number_of_processes}")
+        self._grid = grid
+        self.index.processes = max(self.index.processes, grid.number_of_processes)
 
     @property
     def is_first(self) -> bool:

@@ -88,6 +88,16 @@ class ArchiveWriter:
         self._histories: dict[str, ReductionFile] = {}
         self._covered: dict[str, tuple[int, int]] = {}
 
+    @property
+    def grid(self) -> Grid:
+        """Grid of the time steps and checkpoints to come."""
+        return self._output.grid
+
+    @grid.setter
+    def grid(self, grid: Grid) -> None:
+        for tree in (self._output, self._checkpoints):
+            tree.grid = grid
+
     @classmethod
     def create(
         cls,
@@ -111,7 +121,7 @@ class ArchiveWriter:
         directory
             The archive; it must not exist, or be an empty folder.
         grid
-            Grid of all time steps.
+            Grid of the time steps, until `ArchiveWriter.grid` is set to another.
         input_xml
             The deck as it was understood, includes expanded.
         originals
@@ -187,8 +197,6 @@ class ArchiveWriter:
             exists = (checkpoints / "index.xml").exists()
             checkpoint_index = read_index(checkpoints / "index.xml") if exists else ArchiveIndex.new(1)
         index.restarts.append(Restart(directory.resolve().name, step))
-        for contents in (index, checkpoint_index):
-            contents.processes = max(contents.processes, grid.number_of_processes)
         writer = cls(
             directory,
             Tree(directory, index, grid, compression, ranks),

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ups.archive import Archive, ArchiveError
-from ups.convert import csv, npz, vtk, vtkhdf
+from ups.convert import csv, npz, uda, vtk, vtkhdf
 from ups.convert.registry import FORMATS, Format, Options, Progress, format_of, register
 from ups.convert.selection import Region, Selection
 
@@ -22,6 +22,7 @@ __all__ = [
     "csv",
     "npz",
     "register",
+    "uda",
     "vtk",
     "vtkhdf",
 ]
@@ -49,7 +50,8 @@ def convert(
         The archive, or the folder of its checkpoints.
     out
         Where to write; its suffix chooses the format: ``.pvd`` or a folder for series of VTK XML, ``.vtp``,
-        ``.vtu``, ``.vti``, ``.vtm`` and ``.vth`` for one kind of it, ``.vtkhdf``, ``.csv``, ``.npz``.
+        ``.vtu``, ``.vti``, ``.vtm`` and ``.vth`` for one kind of it, ``.vtkhdf``, ``.csv``, ``.npz``, and
+        ``.uda`` for an archive again.
         Files that are there are replaced.
     variables
         Labels, with or without ``p.`` and ``g.``, perhaps with measures (``stress:vonMises``); None for all.

@@ -49,11 +49,14 @@ class Format:
     write
         Writes what is selected to the output and returns the files to open; raises OSError where the
         disk refuses.
+    makes_folder
+        Whether an output of these suffixes is a folder.
     """
 
     name: str
     suffixes: tuple[str, ...]
     write: Callable[[Selection, Path, Options], list[Path]]
+    makes_folder: bool = False
 
 
 FORMATS: dict[str, Format] = {}
@@ -70,7 +73,9 @@ def register(format_: Format) -> None:
 
 def format_of(out: Path) -> Format:
     """Format that the output's suffix asks for; an existing folder asks for that of folders."""
-    suffix = "" if out.is_dir() else out.suffix.lower()
+    suffix = out.suffix.lower()
+    if out.is_dir() and not (suffix in FORMATS and FORMATS[suffix].makes_folder):
+        suffix = ""
     if suffix not in FORMATS:
         known = ", ".join(f"a name ending in {known}" for known in FORMATS if known)
         raise ArchiveError(
