@@ -10,13 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from itertools import repeat
 from pathlib import Path
 from typing import IO
 
 import numpy as np
 
-from ups.archive import ArchiveError, GridField, Variable
+from ups.archive import ArchiveError, Box, GridField, Variable
+from ups.archive.reader import PART
 from ups.archive.variables import CELL, FACES, NODE
 from ups.convert.registry import Format, Options, register
 from ups.convert.selection import Selection, as_rows
@@ -132,8 +134,18 @@ def _write_step(
             cropped = selection.cropped(grid_field)
             grouped.setdefault((declared.container, material), {})[declared] = cropped
         for (container, material), fields in grouped.items():
-            columns = _grid_columns(step, time, level.index, material, fields, on_grid[container])
-            tables[container].extend(columns)
+            for layers in _layers(fields):
+                columns = _grid_columns(step, time, level.index, material, layers, on_grid[container])
+                tables[container].extend(columns)
+
+
+def _layers(fields: dict[Variable, GridField]) -> Iterator[dict[Variable, GridField]]:
+    """Variables of one box, some layers along x at a time."""
+    low, high = next(iter(fields.values())).box
+    thickness = max(1, PART // max(1, (high[1] - low[1]) * (high[2] - low[2])))
+    for begin in range(low[0], high[0], thickness):
+        part = Box((begin, *low[1:]), (min(begin + thickness, high[0]), *high[1:]))
+        yield {v: replace(f, values=f.values[part.within(low)], box=part) for v, f in fields.items()}
 
 
 register(Format("CSV", (".csv",), write))

@@ -9,8 +9,9 @@ import pytest
 from lxml import etree
 from other_programs import without_checksums
 
-from ups.archive import Archive, ArchiveError, ArchiveWriter, Grid, Level, Patch, Variable
-from ups.convert import FORMATS, Format, convert, register
+from ups.archive import Archive, ArchiveError, ArchiveWriter, Grid, Level, Patch, Variable, reader
+from ups.convert import FORMATS, Format, Region, convert, register, vtkpieces
+from ups.convert import csv as convert_csv
 
 STEPS = (3, 8)
 
@@ -183,6 +184,18 @@ def test_tables(archive, tmp_path):
     assert [float(row["y"]) for row in cells[:4]] == [-0.125, 0.125, 0.375, 0.625]
     assert [float(row["press_CC"]) for row in cells[:4]] == [0, 1, 2, 3]
     assert len(faces) == 2 * 4 * 5
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".pvd", ".vtu"])
+def test_parts_of_any_size_give_the_same_files(archive, tmp_path, monkeypatch, suffix):
+    convert(archive, tmp_path / "whole" / f"x{suffix}", region=Region((1.2, 0, 0), (2.4, 1, 1)))
+    for module in (reader, convert_csv, vtkpieces):
+        monkeypatch.setattr(module, "PART", 1)
+    convert(archive, tmp_path / "parts" / f"x{suffix}", region=Region((1.2, 0, 0), (2.4, 1, 1)))
+    files = [path for path in (tmp_path / "whole").rglob("*") if path.is_file()]
+    assert len(files) > 2
+    for path in files:
+        assert (tmp_path / "parts" / path.relative_to(tmp_path / "whole")).read_bytes() == path.read_bytes()
 
 
 def test_arrays(archive, tmp_path):
