@@ -94,6 +94,8 @@ def _require(selection: Selection, *, particles: bool, grid: bool) -> None:
     if not (particles and selection.has_particles) and not (grid and selection.has_grid):
         kinds = " or ".join(["particle"] * particles + ["grid"] * grid)
         raise ArchiveError(selection.archive.path, f"there is no {kinds} variable to convert")
+    if not selection.timesteps:
+        raise ArchiveError(selection.archive.path, "there are no time steps")
 
 
 def _each_step(

@@ -71,6 +71,8 @@ class ArchiveSummary:
         Name, number of lines, last value and unit of each history.
     checkpoints
         Steps of the checkpoints.
+    restarts
+        Archives and steps that the run was taken up from.
     problems
         What is missing, cut off or damaged, as far as tables and sizes of files tell.
     """
@@ -87,6 +89,7 @@ class ArchiveSummary:
     unsupported: dict[str, str]
     histories: tuple[tuple[str, int, str, str], ...]
     checkpoints: tuple[int, ...]
+    restarts: tuple[tuple[str, int], ...]
     problems: tuple[ArchiveError, ...]
 
     def as_dict(self) -> dict[str, object]:
@@ -142,6 +145,7 @@ def summarize(path: str | Path, step: int = -1) -> ArchiveSummary:
         unsupported=archive.unsupported,
         histories=tuple(_histories(archive)),
         checkpoints=_checkpoints(archive),
+        restarts=tuple((restart.source, restart.step) for restart in archive.index.restarts),
         problems=tuple(health.problems),
     )
 
@@ -241,6 +245,7 @@ def render(summary: ArchiveSummary) -> str:
     ]
     if summary.checkpoints:
         lines.append(f"  checkpoints at the steps {', '.join(map(str, summary.checkpoints))}")
+    lines += [f"  taken up from {source} at step {step}" for source, step in summary.restarts]
     lines += ["", "grid", *(_level_line(level) for level in summary.levels)]
     if summary.step is not None:
         lines += [

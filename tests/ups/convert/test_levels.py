@@ -7,7 +7,7 @@ import pytest
 from lxml import etree
 
 from ups.archive import Archive, ArchiveError, ArchiveWriter, Grid, Level, Patch, Variable
-from ups.convert import convert
+from ups.convert import Region, convert
 
 xml = pytest.importorskip("vtkmodules.vtkIOXML")
 core = pytest.importorskip("vtkmodules.vtkCommonCore")
@@ -215,6 +215,28 @@ def test_several_levels_do_not_fit_into_one_image(two_levels, tmp_path):
 def test_nothing_of_the_kind_is_said(two_levels, tmp_path, suffix, variable, kind):
     with pytest.raises(ArchiveError, match=f"there is no {kind} variable to convert"):
         convert(two_levels, tmp_path / f"out{suffix}", variables=[variable])
+
+
+@pytest.mark.parametrize("suffix", [".pvd", ".vtp", ".vtm", ".vth"])
+def test_an_archive_without_time_steps_is_said(two_levels, tmp_path, suffix):
+    index = tmp_path / "a.uda" / "index.xml"
+    index.parent.mkdir()
+    text = (two_levels / "index.xml").read_text()
+    index.write_text("\n".join(line for line in text.splitlines() if "<timestep " not in line))
+    with pytest.raises(ArchiveError, match="there are no time steps"):
+        convert(index.parent, tmp_path / f"out{suffix}")
+    assert not list(tmp_path.glob("out*"))
+
+
+def test_a_hierarchy_of_a_region(two_levels, tmp_path):
+    convert(two_levels, tmp_path / "out.vth", region=Region((1.5, 0, -1), (2.5, 4, 0)), steps=[1])
+    _whole, levels = hierarchy(tmp_path / "out.vth")
+    boxes = [[image.GetBounds() for image in images] for images in levels]
+    assert boxes == [[(1.5, 2.5, 0, 4, -1, 0)], [(1.5, 2.5, 1, 2, -1, 0), (1.5, 2.5, 2, 3, -1, 0)]]
+    check_image(levels[0][0], 1)
+    check_image(levels[1][1], 1)
+    convert(two_levels, tmp_path / "left.vth", region=Region((0.5, 0, -1), (1.5, 4, 1)), steps=[1])
+    assert list(map(len, hierarchy(tmp_path / "left.vth")[1])) in ([1], [1, 0])
 
 
 def test_the_levels_that_sus_wrote(sus, tmp_path):

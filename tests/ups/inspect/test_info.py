@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from other_programs import without_checksums
 
 from cli import main
 from ups.archive import ArchiveError
@@ -104,3 +105,12 @@ def test_the_numbers_that_puda_prints(sus):
     )
     mass = of(summary, "g.mass")
     assert (mass.low, mass.high) == ((9.9999999999999998e-201,), (6.2500000000000264e-02,))
+
+
+def test_a_run_that_was_taken_up_says_from_where(make):
+    archive = make()
+    index = without_checksums(archive) / "index.xml"
+    note = '  <restarts>\n    <restart from="old.uda" timestep="7"/>\n  </restarts>\n</Uintah_DataArchive>'
+    index.write_text(index.read_text().replace("</Uintah_DataArchive>", note))
+    assert summarize(archive).restarts == (("old.uda", 7),)
+    assert "  taken up from old.uda at step 7\n" in render(summarize(archive))
