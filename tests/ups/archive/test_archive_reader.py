@@ -1,6 +1,7 @@
 """Reading what sus and the writer wrote, archives of other ages, and damaged ones."""
 
 import io
+import itertools
 import re
 import shutil
 import struct
@@ -685,6 +686,14 @@ def test_a_damaged_state_is_a_diagnostic(tmp_path):
         path.write_bytes(whole[:length])
         with pytest.raises(ArchiveError, match=r"restart\.npz: cannot be read"):
             Archive(origin).checkpoints.state(1)
+    refused, checkpoints = 0, Archive(origin).checkpoints
+    for place, bit in itertools.product(range(len(whole)), (0, 3, 7)):
+        path.write_bytes(whole[:place] + bytes([whole[place] ^ 1 << bit]) + whole[place + 1 :])
+        try:
+            assert checkpoints.state(1)["a"].tolist() == [0, 1, 2]
+        except ArchiveError:
+            refused += 1
+    assert refused > len(whole)
 
 
 def test_a_step_whose_folder_is_gone_does_not_hide_the_others(tmp_path):
