@@ -59,7 +59,7 @@ def _write_points(
 ) -> None:
     """Write the particles in the form that the suffix asks for."""
     particles = selection.particles(timestep.step)
-    if path.suffix == ".vtp":
+    if path.suffix.lower() == ".vtp":
         write_vertices(path, particles, timestep.time, threads)
     else:
         write_cells(path, particles, timestep.time, threads, boxes=options.glyphs)
@@ -145,7 +145,7 @@ def _write_single_kind(
 def write_particles(selection: Selection, out: Path, options: Options) -> list[Path]:
     """Write the particles only, as .vtp or .vtu."""
     _require(selection, particles=True, grid=False)
-    if options.glyphs and out.suffix == ".vtp":
+    if options.glyphs and out.suffix.lower() == ".vtp":
         raise ArchiveError(out, "boxes do not fit into this format", advice="write a .vtu or a .pvd")
 
     def work(path: Path, timestep: Timestep, options: Options, threads: int) -> None:

@@ -687,7 +687,7 @@ def test_a_damaged_state_is_a_diagnostic(tmp_path):
         with pytest.raises(ArchiveError, match=r"restart\.npz: cannot be read"):
             Archive(origin).checkpoints.state(1)
     refused, checkpoints = 0, Archive(origin).checkpoints
-    for place, bit in itertools.product(range(len(whole)), (0, 3, 7)):
+    for place, bit in itertools.product(range(len(whole)), (0, 3)):
         path.write_bytes(whole[:place] + bytes([whole[place] ^ 1 << bit]) + whole[place + 1 :])
         try:
             assert checkpoints.state(1)["a"].tolist() == [0, 1, 2]

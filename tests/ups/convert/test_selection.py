@@ -138,6 +138,12 @@ def test_particles_only(growing, tmp_path, pyvista, suffix):
     ]
 
 
+def test_a_suffix_in_capitals_is_the_same_format(growing, tmp_path):
+    for name in ("a.vtp", "a.VTP"):
+        convert(growing, tmp_path / name, steps=[2])
+    assert (tmp_path / "a.vtp").read_bytes() == (tmp_path / "a.VTP").read_bytes()
+
+
 def test_boxes_in_a_file_of_their_own(growing, tmp_path, pyvista):
     convert(growing, tmp_path / "a.vtu", steps=[2], glyphs=True)
     data = pyvista.read(tmp_path / "a.vtu")
