@@ -19,10 +19,7 @@ from ups.archive import Archive, ArchiveError, ArchiveWriter, Box, Grid, Variabl
 from ups.inspect.check import check_archive
 
 X = Variable("p.x", "ParticleVariable", "Point")
-ID = Variable("p.particleID", "ParticleVariable", "long64")
-FLAG = Variable("p.localizedMPM", "ParticleVariable", "int")
 MASS = Variable("g.mass", "NCVariable", "double")
-BURNS = Variable("burns", "PerPatch", "int")
 ENERGY = Variable("KineticEnergy", "ReductionVariable", "double")
 DELT = Variable("delT", "ReductionVariable", "double")
 
@@ -38,10 +35,7 @@ def write_small(folder, compression):
     with ArchiveWriter.create(folder, grid, input_xml="<a/>", compression=compression) as writer:
         fields = {
             X: {0: np.array([[0.5, 0.5, 0.5], [1.5, 0.25, 0.5]]), 1: np.array([[1.75, 0.5, 0.5]])},
-            ID: {0: np.array([7, 1 << 40]), 1: np.array([9])},
-            FLAG: {0: np.array([0, -1]), 1: np.array([2])},
             MASS: {0: np.arange(float(np.prod(nodes))).reshape(nodes)},
-            BURNS: {0: np.array([3, 4])},
         }
         for step in (1, 2, 3):
             writer.append_reductions(step, step / 10, {ENERGY: {-1: step / 7}})
