@@ -88,16 +88,6 @@ class ArchiveWriter:
         self._histories: dict[str, ReductionFile] = {}
         self._covered: dict[str, tuple[int, int]] = {}
 
-    @property
-    def grid(self) -> Grid:
-        """Grid of the time steps and checkpoints to come."""
-        return self._output.grid
-
-    @grid.setter
-    def grid(self, grid: Grid) -> None:
-        for tree in (self._output, self._checkpoints):
-            tree.grid = grid
-
     @classmethod
     def create(
         cls,
@@ -121,7 +111,7 @@ class ArchiveWriter:
         directory
             The archive; it must not exist, or be an empty folder.
         grid
-            Grid of the time steps, until `ArchiveWriter.grid` is set to another.
+            Grid of the time steps, until `use_grid` gives another.
         input_xml
             The deck as it was understood, includes expanded.
         originals
@@ -211,6 +201,11 @@ class ArchiveWriter:
             if ranks.rank == 0:
                 writer._cut_histories(step, time)
         return writer
+
+    def use_grid(self, grid: Grid) -> None:
+        """Store the time steps to come on another grid, as when ranks share out its patches anew."""
+        for tree in (self._output, self._checkpoints):
+            tree.grid = grid
 
     def write_timestep(
         self,

@@ -38,8 +38,9 @@ def write(selection: Selection, out: Path, options: Options) -> list[Path]:
         _copy_histories(archive, writer)
         for done, timestep in enumerate(selection.timesteps, 1):
             step = timestep.step
-            writer.grid = archive.grid(step)
-            fields = [_fields(selection, step, level.index) for level in writer.grid.levels]
+            grid = archive.grid(step)
+            fields = [_fields(selection, step, level.index) for level in grid.levels]
+            writer.use_grid(grid)
             sections = archive.sections(step)
             writer.write_timestep(step, timestep.time, timestep.old_delt, fields, sections=sections)
             options.progress(done, len(selection.timesteps))
