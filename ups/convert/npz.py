@@ -12,15 +12,17 @@ from pathlib import Path
 
 import numpy as np
 
-from ups.convert.registry import Format, Options, register
+from ups.convert.registry import Format, Options, atomically, register
 from ups.convert.selection import Selection
 
 
 def write(selection: Selection, out: Path, options: Options) -> list[Path]:
     """Write the selection into one file that `numpy.load` reads."""
     out.parent.mkdir(parents=True, exist_ok=True)
-    partial = out.with_name(out.name + ".partial")
-    with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+    with (
+        atomically(out) as partial,
+        zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive,
+    ):
 
         def put(key: str, values: np.ndarray) -> None:
             with archive.open(f"{key}.npy", "w", force_zip64=True) as member:
@@ -44,7 +46,6 @@ def write(selection: Selection, out: Path, options: Options) -> list[Path]:
                     put(key, grid_field.values)
                     put(f"{key}/low", np.array(grid_field.origin))
             options.progress(done, len(selection.timesteps))
-    partial.replace(out)
     return [out]
 
 

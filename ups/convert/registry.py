@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -82,3 +83,15 @@ def format_of(out: Path) -> Format:
             out, f"no format is known by the suffix {suffix}", advice=f"give {known}, or a folder"
         )
     return FORMATS[suffix]
+
+
+@contextmanager
+def atomically(path: Path) -> Iterator[Path]:
+    """Give the name under which a file is written; it gets its own when it is whole, and is removed if it fails."""
+    partial = path.with_name(path.name + ".partial")
+    try:
+        yield partial
+        partial.replace(path)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise

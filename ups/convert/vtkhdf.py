@@ -16,7 +16,7 @@ import numpy as np
 
 from ups.archive import ArchiveError, Level
 from ups.archive.variables import NODE
-from ups.convert.registry import Format, Options, register
+from ups.convert.registry import Format, Options, atomically, register
 from ups.convert.selection import ParticleSet, Selection, plain_title
 from ups.convert.vtkpieces import HIDDEN, hidden_cells, interior_values
 
@@ -193,7 +193,7 @@ def write(selection: Selection, out: Path, options: Options) -> list[Path]:
 
         def create(path: Path) -> Any:
             paths.append(path)
-            return stack.enter_context(h5py.File(_partial(path), "w"))
+            return stack.enter_context(h5py.File(stack.enter_context(atomically(path)), "w"))
 
         particles = _Particles(create(out)) if selection.has_particles else None
         images: dict[int, _Image] = {}
@@ -209,14 +209,7 @@ def write(selection: Selection, out: Path, options: Options) -> list[Path]:
                     images[level.index] = _Image(create(path), selection, level)
                 images[level.index].add(timestep.step, level, timestep.time)
             options.progress(done, len(selection.timesteps))
-    for path in paths:
-        _partial(path).replace(path)
     return paths
-
-
-def _partial(path: Path) -> Path:
-    """Name of a file while it is written."""
-    return path.with_name(path.name + ".partial")
 
 
 register(Format("VTKHDF", (".vtkhdf",), write))

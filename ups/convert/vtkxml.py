@@ -20,6 +20,7 @@ from typing import IO
 import numpy as np
 
 from ups.archive.markup import HEADER, attributes, number
+from ups.convert.registry import atomically
 
 BLOCK = 1 << 20
 """Bytes that are compressed together."""
@@ -136,8 +137,7 @@ def save(path: Path, kind: str, body: Body, time: float, threads: int = 1) -> No
         lines = [piece if isinstance(piece, str) else piece.element(next(offset)) for piece in pieces]
         return ("\n".join(lines) + "\n_").encode()
 
-    partial = path.with_name(path.name + ".partial")
-    with partial.open("wb") as file, _compressor(threads) as compress:
+    with atomically(path) as partial, partial.open("wb") as file, _compressor(threads) as compress:
         file.write(header([0] * len(arrays)))
         begin, offsets = file.tell(), []
         for array in arrays:
@@ -146,7 +146,6 @@ def save(path: Path, kind: str, body: Body, time: float, threads: int = 1) -> No
         file.write(b"\n</AppendedData>\n</VTKFile>\n")
         file.seek(0)
         file.write(header(offsets))
-    partial.replace(path)
 
 
 def _append(
@@ -252,6 +251,5 @@ def _relative(file: Path, beside: Path) -> str:
 
 def save_lines(path: Path, lines: Sequence[str]) -> None:
     """Write a text file, which has its name only when it is whole."""
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    partial.replace(path)
+    with atomically(path) as partial:
+        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")

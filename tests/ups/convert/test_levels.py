@@ -217,6 +217,44 @@ def test_nothing_of_the_kind_is_said(two_levels, tmp_path, suffix, variable, kin
         convert(two_levels, tmp_path / f"out{suffix}", variables=[variable])
 
 
+def test_vtkhdf_has_a_file_for_each_level(two_levels, tmp_path):
+    pytest.importorskip("h5py")
+    hdf = pytest.importorskip("vtkmodules.vtkIOHDF")
+    files = convert(two_levels, tmp_path / "x.vtkhdf")
+    assert [file.name for file in files] == ["x.vtkhdf", "x_grid.vtkhdf", "x_grid_l1.vtkhdf"]
+    for file, seen in zip(files[1:], (6 * 4 * 2 - 4 * 2, 4 * 2 * 8), strict=True):
+        reader = hdf.vtkHDFReader()
+        reader.SetFileName(str(file))
+        reader.UpdateInformation()
+        for row, step in enumerate(TIMES):
+            reader.SetStep(row)
+            reader.Modified()
+            reader.Update()
+            image = reader.GetOutputDataObject(0)
+            assert reader.GetTimeValue() == TIMES[step]
+            check_image(image, step)
+            marks = to_numpy(image.GetCellData().GetArray("vtkGhostType"))
+            assert np.count_nonzero(marks == 0) == seen
+
+
+def test_a_level_that_changes_does_not_fit_into_vtkhdf(tmp_path):
+    pytest.importorskip("h5py")
+    grids = [
+        Grid((Level(0, (0, 0, 0), (1, 1, 1), (0, 0, 0), (False,) * 3, (Patch(0, 0, (0, 0, 0), (n, 2, 2)),)),))
+        for n in (2, 4)
+    ]
+    with ArchiveWriter.create(tmp_path / "a.uda", grids[0], input_xml="<a/>") as writer:
+        for step, grid in enumerate(grids, 1):
+            writer.use_grid(grid)
+            writer.write_timestep(step, step / 10, 0.1, {CELLS: {0: on(grid.levels[0], "CCVariable", step)}})
+    with pytest.raises(ArchiveError, match=r"level 0 is another grid at step 2 .*; write a \.pvd, or fewer"):
+        convert(tmp_path / "a.uda", tmp_path / "x.vtkhdf")
+    assert not list(tmp_path.glob("x*"))
+    convert(tmp_path / "a.uda", tmp_path / "x.vti")
+    images = [read(xml.vtkXMLImageDataReader(), tmp_path / f"x_0000{step}.vti") for step in (1, 2)]
+    assert [image.GetNumberOfCells() for image in images] == [8, 16]
+
+
 @pytest.mark.parametrize("suffix", [".pvd", ".vtp", ".vtm", ".vth"])
 def test_an_archive_without_time_steps_is_said(two_levels, tmp_path, suffix):
     index = tmp_path / "a.uda" / "index.xml"
