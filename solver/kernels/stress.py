@@ -99,86 +99,57 @@ def update_stresses(
     ``cell_stretch`` holds det F averaged over each cell, used where pressure is stabilized. Does the chunks ``first``
     to ``last`` of particles and stores in ``sums`` (chunks, STRESS_SUMS) each one's :class:`Stressed`.
     """
-    for chunk in range(first, last):
-        update_chunk(
-            model,
-            state,
-            failure,
-            particles,
-            material,
-            step,
-            kinematics,
-            cells,
-            cell_stretch,
-            chunk,
-            sums[chunk],
-        )
-
-
-@inline
-def update_chunk(
-    model: Any,
-    state: Any,
-    failure: Failure,
-    particles: Particles,
-    material: Material,
-    step: Step,
-    kinematics: Kinematics,
-    cells: Any,
-    cell_stretch: Any,
-    chunk: int,
-    sums: Any,
-) -> None:
-    """The stress update of one chunk of particles."""
     dt = step.dt
-    energy = total_volume = 0.0
-    wx = wy = wz = 1.0e-12
-    finite = True
-    for p in range(chunk * CHUNK, min((chunk + 1) * CHUNK, particles.mass.shape[0])):
-        F_old = tensor_at(particles.deformation_gradient, p)
-        L = tensor_at(particles.velocity_gradient, p)
-        F = new_deformation_gradient(F_old, L, dt, kinematics.subcycles)
-        J, J_old = determinant(F), determinant(F_old)
-        volume_old = particles.volume[p]
-        volume = volume_old * J / J_old
-        if kinematics.stabilize_pressure:
-            J_cell = cell_stretch[cells[p]]
-            F = F * (J_cell / J) ** (1.0 / 3.0)
-            L = L + isotropic(math.log(J_cell / J) / (3.0 * dt))
-            put_tensor(particles.velocity_gradient, p, L)
-        point = Point(
-            tensor_at(particles.stress, p),
-            F_old,
-            F,
-            L,
-            volume_old,
-            volume,
-            particles.mass[p],
-            particles.temperature[p],
-            particles.previous_temperature[p],
-            particles.localized[p],
-        )
-        point = restrained(failure, point)
-        new = stress_update(model, state, p, point, material, step)
-        new = weakened(failure, model, state, p, point, new, material, step)
-        put_tensor(particles.deformation_gradient, p, point.deformation_gradient)
-        put_tensor(particles.stress, p, new.stress)
-        particles.volume[p] = volume
-        particles.artificial_pressure[p] = new.artificial_pressure
-        particles.heating_rate[p] = new.heating_rate
-        particles.localized[p] = new.localized
-        temperature = particles.temperature[p]
-        particles.previous_temperature[p] = temperature
-        particles.temperature[p] = temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
-        energy += new.strain_energy
-        total_volume += volume
-        c = new.sound_speed
-        wx = max(wx, c + abs(particles.old_velocity[p, 0]))
-        wy = max(wy, c + abs(particles.old_velocity[p, 1]))
-        wz = max(wz, c + abs(particles.old_velocity[p, 2]))
-        x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
-        if not math.isfinite(norm(new.stress) + c + x + y + z):
-            finite = False
-    sums[0], sums[1] = energy, total_volume
-    sums[2], sums[3], sums[4] = wx, wy, wz
-    sums[5] = 1.0 if finite else 0.0
+    for chunk in range(first, last):
+        energy = total_volume = 0.0
+        wx = wy = wz = 1.0e-12
+        finite = True
+        for p in range(chunk * CHUNK, min((chunk + 1) * CHUNK, particles.mass.shape[0])):
+            F_old = tensor_at(particles.deformation_gradient, p)
+            L = tensor_at(particles.velocity_gradient, p)
+            F = new_deformation_gradient(F_old, L, dt, kinematics.subcycles)
+            J, J_old = determinant(F), determinant(F_old)
+            volume_old = particles.volume[p]
+            volume = volume_old * J / J_old
+            if kinematics.stabilize_pressure:
+                J_cell = cell_stretch[cells[p]]
+                F = F * (J_cell / J) ** (1.0 / 3.0)
+                L = L + isotropic(math.log(J_cell / J) / (3.0 * dt))
+                put_tensor(particles.velocity_gradient, p, L)
+            point = Point(
+                tensor_at(particles.stress, p),
+                F_old,
+                F,
+                L,
+                volume_old,
+                volume,
+                particles.mass[p],
+                particles.temperature[p],
+                particles.previous_temperature[p],
+                particles.localized[p],
+            )
+            point = restrained(failure, point)
+            new = stress_update(model, state, p, point, material, step)
+            new = weakened(failure, model, state, p, point, new, material, step)
+            put_tensor(particles.deformation_gradient, p, point.deformation_gradient)
+            put_tensor(particles.stress, p, new.stress)
+            particles.volume[p] = volume
+            particles.artificial_pressure[p] = new.artificial_pressure
+            particles.heating_rate[p] = new.heating_rate
+            particles.localized[p] = new.localized
+            temperature = particles.temperature[p]
+            particles.previous_temperature[p] = temperature
+            particles.temperature[p] = temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
+            energy += new.strain_energy
+            total_volume += volume
+            c = new.sound_speed
+            wx = max(wx, c + abs(particles.old_velocity[p, 0]))
+            wy = max(wy, c + abs(particles.old_velocity[p, 1]))
+            wz = max(wz, c + abs(particles.old_velocity[p, 2]))
+            x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
+            if not math.isfinite(norm(new.stress) + c + x + y + z):
+                finite = False
+        row = sums[chunk]
+        row[0], row[1] = energy, total_volume
+        row[2], row[3], row[4] = wx, wy, wz
+        row[5] = 1.0 if finite else 0.0
