@@ -8,11 +8,13 @@ from typing import Any, NamedTuple
 from solver.declare import model
 from solver.dispatch import implements, inline
 from solver.grid import GridIndex
-from solver.interpolation.shape import particle_domain, reach, shape_functions
+from solver.interpolation.corners import DomainCorner, cornered, domain_corner, number_of_corners
+from solver.interpolation.shape import particle_domain, reach
 from solver.tensor import Tensor, determinant
 
 
 @model("interpolator", "cpdi", "fast_cpdi")
+@cornered
 class Cpdi(NamedTuple):
     """Particles are parallelepipeds that deform with F; S is averaged over their eight corners."""
 
@@ -25,6 +27,7 @@ class Cpdi(NamedTuple):
         return CpdiAxisymmetric() if axisymmetric else Cpdi(critical_length)
 
 
+@cornered
 class CpdiAxisymmetric(NamedTuple):
     """Particles are parallelograms in (r, z) = (x, y); S is averaged over their four corners."""
 
@@ -80,48 +83,6 @@ def _(interpolator: CpdiAxisymmetric, deformation_gradient: Tensor, size: Tensor
     return deformation_gradient @ size
 
 
-@inline
-def corner_cell(q: float, first: int, nodes: int) -> int:
-    """The cell of a corner; a corner beyond the stored nodes uses the outermost cell."""
-    return min(max(math.floor(q), first), first + nodes - 2)
-
-
-@inline
-def add_corner(
-    grid: GridIndex,
-    qx: float,
-    qy: float,
-    qz: float,
-    weight: float,
-    alpha: Diagonal,
-    n: int,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    """Append the eight nodes around a corner: S = weight phi(corner), gradient alpha phi(corner)."""
-    i = corner_cell(qx, grid.first[0], grid.nodes[0])
-    j = corner_cell(qy, grid.first[1], grid.nodes[1])
-    k = corner_cell(qz, grid.first[2], grid.nodes[2])
-    row = grid.nodes[0]
-    layer = row * grid.nodes[1]
-    first = (i - grid.first[0]) + row * (j - grid.first[1]) + layer * (k - grid.first[2])
-    fx, fy, fz = qx - i, qy - j, qz - k
-    for c in range(2):
-        wz = fz if c else 1.0 - fz
-        for b in range(2):
-            wyz = (fy if b else 1.0 - fy) * wz
-            for a in range(2):
-                phi = (fx if a else 1.0 - fx) * wyz
-                nodes[n] = first + a + row * b + layer * c
-                weights[n] = weight * phi
-                gradients[n, 0] = alpha.x * phi
-                gradients[n, 1] = alpha.y * phi
-                gradients[n, 2] = alpha.z * phi
-                n += 1
-    return n
-
-
 @implements(reach, Cpdi, CpdiAxisymmetric)
 def _(interpolator: Any, domain: Tensor) -> float:
     return largest_extent(domain)
@@ -136,100 +97,63 @@ def largest_extent(r: Tensor) -> float:
     return 1.0 + 0.5 * max(x, y, z)
 
 
-@implements(shape_functions, Cpdi)
-def _(
-    interpolator: Cpdi,
-    grid: GridIndex,
-    x: float,
-    y: float,
-    z: float,
-    domain: Tensor,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    r = domain
-    qx = (x - grid.anchor[0]) / grid.spacing[0]
-    qy = (y - grid.anchor[1]) / grid.spacing[1]
-    qz = (z - grid.anchor[2]) / grid.spacing[2]
-    scale = 1.0 / (4.0 * determinant(r))
-    n = 0
-    for corner in range(8):
-        s1 = 1.0 if corner & 1 else -1.0
-        s2 = 1.0 if corner & 2 else -1.0
-        s3 = 1.0 if corner & 4 else -1.0
-        # alpha = (s1 r2 x r3 + s2 r3 x r1 + s3 r1 x r2) / 4V, divided by the spacing for 1/length
-        ax = (
-            s1 * (r.yy * r.zz - r.zy * r.yz)
-            + s2 * (r.yz * r.zx - r.zz * r.yx)
-            + s3 * (r.yx * r.zy - r.zx * r.yy)
-        )
-        ay = (
-            s1 * (r.zy * r.xz - r.xy * r.zz)
-            + s2 * (r.zz * r.xx - r.xz * r.zx)
-            + s3 * (r.zx * r.xy - r.xx * r.zy)
-        )
-        az = (
-            s1 * (r.xy * r.yz - r.yy * r.xz)
-            + s2 * (r.xz * r.yx - r.yz * r.xx)
-            + s3 * (r.xx * r.yy - r.yx * r.xy)
-        )
-        alpha = Diagonal(
-            scale * ax / grid.spacing[0], scale * ay / grid.spacing[1], scale * az / grid.spacing[2]
-        )
-        n = add_corner(
-            grid,
-            qx + 0.5 * (s1 * r.xx + s2 * r.xy + s3 * r.xz),
-            qy + 0.5 * (s1 * r.yx + s2 * r.yy + s3 * r.yz),
-            qz + 0.5 * (s1 * r.zx + s2 * r.zy + s3 * r.zz),
-            0.125,
-            alpha,
-            n,
-            nodes,
-            weights,
-            gradients,
-        )
-    return n
+@implements(number_of_corners, Cpdi)
+def _(interpolator: Cpdi) -> int:
+    return 8
 
 
-@implements(shape_functions, CpdiAxisymmetric)
-def _(
-    interpolator: CpdiAxisymmetric,
-    grid: GridIndex,
-    x: float,
-    y: float,
-    z: float,
-    domain: Tensor,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    r = domain
-    hx, hy = grid.spacing[0], grid.spacing[1]
-    qx, qy = (x - grid.anchor[0]) / hx, (y - grid.anchor[1]) / hy
-    # As in Uintah, V holds the hoop stretch F33 although r3 is taken as the unit vector.
+@implements(number_of_corners, CpdiAxisymmetric)
+def _(interpolator: CpdiAxisymmetric) -> int:
+    return 4
+
+
+@inline
+def sign(n: int, bit: int) -> float:
+    """On which side of the particle corner ``n`` lies in one direction."""
+    return 1.0 if n & bit else -1.0
+
+
+@implements(domain_corner, Cpdi)
+def _(interpolator: Cpdi, grid: GridIndex, x: float, z: float, domain: Tensor, n: int) -> DomainCorner:
+    """G = (s1 r2 x r3 + s2 r3 x r1 + s3 r1 x r2) / 4V, divided by the spacing for 1/length."""
+    r, s1, s2, s3 = domain, sign(n, 1), sign(n, 2), sign(n, 4)
     scale = 1.0 / (4.0 * determinant(r))
-    n = 0
-    for corner in range(4):
-        s1 = 1.0 if corner & 1 else -1.0
-        s2 = 1.0 if corner & 2 else -1.0
-        alpha = Diagonal(scale * (s1 * r.yy - s2 * r.yx) / hx, scale * (s2 * r.xx - s1 * r.xy) / hy, 0.0)
-        start = n
-        n = add_corner(
-            grid,
-            qx + 0.5 * (s1 * r.xx + s2 * r.xy),
-            qy + 0.5 * (s1 * r.yx + s2 * r.yy),
-            0.5,
-            0.25,
-            alpha,
-            n,
-            nodes,
-            weights,
-            gradients,
-        )
-        for m in range(start, n):
-            # phi holds the half that each of the two layers takes; Uintah gives each layer the whole gradient.
-            gradients[m, 0] *= 2.0
-            gradients[m, 1] *= 2.0
-            gradients[m, 2] = weights[m] / x
-    return n
+    ax = (
+        s1 * (r.yy * r.zz - r.zy * r.yz) + s2 * (r.yz * r.zx - r.zz * r.yx) + s3 * (r.yx * r.zy - r.zx * r.yy)
+    )
+    ay = (
+        s1 * (r.zy * r.xz - r.xy * r.zz) + s2 * (r.zz * r.xx - r.xz * r.zx) + s3 * (r.zx * r.xy - r.xx * r.zy)
+    )
+    az = (
+        s1 * (r.xy * r.yz - r.yy * r.xz) + s2 * (r.xz * r.yx - r.yz * r.xx) + s3 * (r.xx * r.yy - r.yx * r.xy)
+    )
+    return DomainCorner(
+        0.5 * (s1 * r.xx + s2 * r.xy + s3 * r.xz),
+        0.5 * (s1 * r.yx + s2 * r.yy + s3 * r.yz),
+        0.5 * (s1 * r.zx + s2 * r.zy + s3 * r.zz),
+        0.125,
+        scale * ax / grid.spacing[0],
+        scale * ay / grid.spacing[1],
+        scale * az / grid.spacing[2],
+    )
+
+
+@implements(domain_corner, CpdiAxisymmetric)
+def _(
+    interpolator: CpdiAxisymmetric, grid: GridIndex, x: float, z: float, domain: Tensor, n: int
+) -> DomainCorner:
+    """As Uintah: V holds the hoop stretch F33 although r3 is taken as the unit vector.
+
+    The linear function holds the half that each of the two layers of nodes takes; each gets the whole gradient.
+    """
+    r, s1, s2 = domain, sign(n, 1), sign(n, 2)
+    scale = 2.0 / (4.0 * determinant(r))
+    return DomainCorner(
+        0.5 * (s1 * r.xx + s2 * r.xy),
+        0.5 * (s1 * r.yx + s2 * r.yy),
+        0.5 - (z - grid.anchor[2]) / grid.spacing[2],
+        0.25,
+        scale * (s1 * r.yy - s2 * r.yx) / grid.spacing[0],
+        scale * (s2 * r.xx - s1 * r.xy) / grid.spacing[1],
+        0.25 / x,
+    )

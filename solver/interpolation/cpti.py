@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from solver.declare import model
 from solver.dispatch import implements
 from solver.grid import GridIndex
-from solver.interpolation.cpdi import Diagonal, add_corner, largest_extent, shortened
-from solver.interpolation.shape import particle_domain, reach, shape_functions
+from solver.interpolation.corners import DomainCorner, cornered, domain_corner, number_of_corners
+from solver.interpolation.cpdi import largest_extent, shortened
+from solver.interpolation.shape import particle_domain, reach
 from solver.tensor import Tensor, determinant
 
 
 @model("interpolator", "cpti")
+@cornered
 class Cpti(NamedTuple):
     """Particles are tetrahedra with edges r1, r2, r3 from one corner; S is averaged over their four corners."""
 
@@ -54,42 +56,27 @@ def _(interpolator: Cpti, domain: Tensor) -> float:
     return 2.0 * largest_extent(domain)
 
 
-@implements(shape_functions, Cpti)
-def _(
-    interpolator: Cpti,
-    grid: GridIndex,
-    x: float,
-    y: float,
-    z: float,
-    domain: Tensor,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    r = domain
-    hx, hy, hz = grid.spacing
-    qx = (x - grid.anchor[0]) / hx - 0.25 * (r.xx + r.xy + r.xz)
-    qy = (y - grid.anchor[1]) / hy - 0.25 * (r.yx + r.yy + r.yz)
-    qz = (z - grid.anchor[2]) / hz - 0.25 * (r.zx + r.zy + r.zz)
-    # Gradients of the tetrahedron's barycentric coordinates: faces r2 x r3, r3 x r1, r1 x r2 over 6V = det r.
+@implements(number_of_corners, Cpti)
+def _(interpolator: Cpti) -> int:
+    return 4
+
+
+@implements(domain_corner, Cpti)
+def _(interpolator: Cpti, grid: GridIndex, x: float, z: float, domain: Tensor, n: int) -> DomainCorner:
+    """G is that of the tetrahedron's barycentric coordinates: faces r2 x r3, r3 x r1, r1 x r2 over 6V = det r."""
+    r, (hx, hy, hz) = domain, grid.spacing
     s = 1.0 / determinant(r)
-    a1 = Diagonal(
-        s * (r.yy * r.zz - r.zy * r.yz) / hx,
-        s * (r.zy * r.xz - r.xy * r.zz) / hy,
-        s * (r.xy * r.yz - r.yy * r.xz) / hz,
-    )
-    a2 = Diagonal(
-        s * (r.yz * r.zx - r.zz * r.yx) / hx,
-        s * (r.zz * r.xx - r.xz * r.zx) / hy,
-        s * (r.xz * r.yx - r.yz * r.xx) / hz,
-    )
-    a3 = Diagonal(
-        s * (r.yx * r.zy - r.zx * r.yy) / hx,
-        s * (r.zx * r.xy - r.xx * r.zy) / hy,
-        s * (r.xx * r.yy - r.yx * r.xy) / hz,
-    )
-    a0 = Diagonal(-(a1.x + a2.x + a3.x), -(a1.y + a2.y + a3.y), -(a1.z + a2.z + a3.z))
-    n = add_corner(grid, qx, qy, qz, 0.25, a0, 0, nodes, weights, gradients)
-    n = add_corner(grid, qx + r.xx, qy + r.yx, qz + r.zx, 0.25, a1, n, nodes, weights, gradients)
-    n = add_corner(grid, qx + r.xy, qy + r.yy, qz + r.zy, 0.25, a2, n, nodes, weights, gradients)
-    return add_corner(grid, qx + r.xz, qy + r.yz, qz + r.zz, 0.25, a3, n, nodes, weights, gradients)
+    x0, y0, z0 = -0.25 * (r.xx + r.xy + r.xz), -0.25 * (r.yx + r.yy + r.yz), -0.25 * (r.zx + r.zy + r.zz)
+    x1, y1 = s * (r.yy * r.zz - r.zy * r.yz) / hx, s * (r.zy * r.xz - r.xy * r.zz) / hy
+    z1 = s * (r.xy * r.yz - r.yy * r.xz) / hz
+    x2, y2 = s * (r.yz * r.zx - r.zz * r.yx) / hx, s * (r.zz * r.xx - r.xz * r.zx) / hy
+    z2 = s * (r.xz * r.yx - r.yz * r.xx) / hz
+    x3, y3 = s * (r.yx * r.zy - r.zx * r.yy) / hx, s * (r.zx * r.xy - r.xx * r.zy) / hy
+    z3 = s * (r.xx * r.yy - r.yx * r.xy) / hz
+    if n == 0:
+        return DomainCorner(x0, y0, z0, 0.25, -(x1 + x2 + x3), -(y1 + y2 + y3), -(z1 + z2 + z3))
+    if n == 1:
+        return DomainCorner(x0 + r.xx, y0 + r.yx, z0 + r.zx, 0.25, x1, y1, z1)
+    if n == 2:
+        return DomainCorner(x0 + r.xy, y0 + r.yy, z0 + r.zy, 0.25, x2, y2, z2)
+    return DomainCorner(x0 + r.xz, y0 + r.yz, z0 + r.zz, 0.25, x3, y3, z3)

@@ -139,7 +139,9 @@ def update_stresses(
             particles.localized[p] = new.localized
             temperature = particles.temperature[p]
             particles.previous_temperature[p] = temperature
-            particles.temperature[p] = temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
+            particles.temperature[p] = (
+                temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
+            )
             energy += new.strain_energy
             total_volume += volume
             c = new.sound_speed
