@@ -24,10 +24,11 @@ class Condition:
 
     Attributes
     ----------
-    label : ``Velocity``, ``Symmetric`` or ``Temperature`` (others have no effect on particles).
+    label : ``Velocity``, ``Symmetric``, ``Temperature`` or ``SD-Type``, a concentration (others have no effect on
+        particles).
     kind : ``Dirichlet``, ``Neumann`` or ``symmetry``.
     material : material index, or -1 for all.
-    value : (3,) velocity, or a temperature or temperature gradient in all three places.
+    value : (3,) velocity, or a scalar or its gradient in all three places.
     """
 
     label: str
@@ -59,6 +60,9 @@ class Operations(NamedTuple):
     source: Array
 
 
+SCALARS = ("Temperature", "SD-Type")
+"""Labels of scalars, whose gradient may be given in place of their value."""
+
 SET, ZERO_NORMAL, MIRROR, GRADIENT = range(4)
 """Kinds of operation: set to the value; zero the normal component; copy the source with the normal component
 negated; scalar of the source node less the value."""
@@ -81,7 +85,7 @@ class BoundaryConditions:
         self._regions = {face: [r for r in regions if r.face == face] for face in FACES}
         self._operations = {
             (label, m): self._compile(label, m)
-            for label in ("Velocity", "Symmetric", "Temperature")
+            for label in ("Velocity", "Symmetric", *SCALARS)
             for m in range(materials)
         }
 
@@ -96,6 +100,10 @@ class BoundaryConditions:
     def apply_temperature(self, temperature: Array, material: int) -> None:
         """Impose temperatures, or their gradient, on nodal values (N,) in place."""
         self._run("Temperature", temperature.reshape(-1, 1), material)
+
+    def apply_concentration(self, concentration: Array, material: int) -> None:
+        """Impose concentrations, or their gradient, on nodal values (N,) in place."""
+        self._run("SD-Type", concentration.reshape(-1, 1), material)
 
     def node_to_cell_weight(self) -> Array:
         """1/8 at every node, doubled for each symmetry face (of material 0) that the node lies on, (N,)."""
@@ -194,7 +202,7 @@ class BoundaryConditions:
         outer = self._face_nodes(patch, face, extra=True) if self._extra_nodes else inner[:0]
         if condition.kind == "Dirichlet":
             return [(SET, axis, value, inner, inner), (SET, axis, value, outer, outer)]
-        if condition.kind == "Neumann" and condition.label == "Temperature":
+        if condition.kind == "Neumann" and condition.label in SCALARS:
             drop = value[0] * self._grid.spacing[axis]
             first = self._grid.flat(*(int(axis == a) for a in range(3))) - self._grid.flat(0, 0, 0)
             inwards = -first if plus else first

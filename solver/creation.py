@@ -64,9 +64,7 @@ class GeometryObject:
     map_shift: Annotated[
         Vector, Parameter("b in the map x -> A x + b", unit="m", tag="affineTransformation_b")
     ] = (0.0, 0.0, 0.0)
-    concentration: Annotated[
-        float, Parameter("initial concentration", ignored="scalar diffusion is not part of this program")
-    ] = 0.0
+    concentration: Annotated[float, Parameter("concentration of a diffusing substance at the start")] = 0.0
     level: Annotated[int, Parameter("level of the grid", ignored="there is one level")] = 0
     density: Annotated[
         float, Parameter("density of a gas", unit="kg/m^3", ignored="the material gives its density")
@@ -156,6 +154,8 @@ class Creation(NamedTuple):
     that list their own particles, unless they list the load curves too."""
     normal: Array
     """(n, 3) surface normals that a particle file gave, else 0."""
+    concentration: Array
+    """(n,) of a diffusing substance, at the start."""
 
 
 class _Filled(NamedTuple):
@@ -221,7 +221,7 @@ def create_particles(
     patch = np.concatenate([b.patch for b in batches]) if batches else np.zeros(0, np.int32)
     # Patches are the outer loop: a stable sort moves patches together and keeps the rest.
     order: Any = np.argsort(patch, kind="stable") if len(grid.patches) > 1 else slice(None)
-    particles, normal = _initial_state(batches, objects, material, order)
+    particles, normal, concentration = _initial_state(batches, objects, material, order)
     particles.id[...] = ids.assign(particles.position)
     return Creation(
         particles,
@@ -230,16 +230,17 @@ def create_particles(
         np.array([p.id for p in grid.patches], np.int32)[patch[order]],
         np.concatenate([b.loadable for b in batches])[order] if batches else np.zeros(0, bool),
         normal,
+        concentration,
     )
 
 
 def _initial_state(
     batches: Sequence[_Batch], objects: Sequence[GeometryObject], material: Material, order: Any
-) -> tuple[Particles, Array]:
-    """All particles in their final order, at their initial values, and their listed normals."""
+) -> tuple[Particles, Array, Array]:
+    """All particles in their final order, at their initial values, their listed normals, and concentrations."""
     count = sum(len(b.position) for b in batches)
     made = new_arrays(Particles, count)
-    normal = np.zeros((count, 3))
+    beside = {"normal": np.zeros((count, 3)), "concentration": np.zeros(count)}
     start = 0
     for batch, body in zip(batches, objects, strict=True):
         here = slice(start, start + len(batch.position))
@@ -251,14 +252,16 @@ def _initial_state(
         made.temperature[here] = body.temperature
         made.color[here] = body.color
         made.surface[here] = batch.surface
+        beside["concentration"][here] = body.concentration
         for name, values in batch.listed.items():
-            target = normal if name == "normal" else getattr(made, name)
+            target = beside[name] if name in beside else getattr(made, name)
             target[here] = values
         start = here.stop
     made.previous_temperature[...] = made.temperature
     if isinstance(order, slice):
-        return made, normal
-    return Particles(*(np.ascontiguousarray(array[order]) for array in made)), normal[order]
+        return made, beside["normal"], beside["concentration"]
+    particles = Particles(*(np.ascontiguousarray(array[order]) for array in made))
+    return particles, beside["normal"][order], beside["concentration"][order]
 
 
 def _filled_particles(

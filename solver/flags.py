@@ -187,11 +187,15 @@ class Flags:
     iters_before_timestep_restart: Annotated[int, Parameter("iterations", ge=0, ignored=IMPLICIT)] = 25
     delT_decrease_factor: Annotated[float, Parameter("factor", ignored=IMPLICIT)] = 0.6
     delT_increase_factor: Annotated[float, Parameter("factor", ignored=IMPLICIT)] = 2.0
-    with_gauss_solver: Annotated[bool, Parameter("solver", ignored="scalar diffusion only")] = False
-    do_auto_cycle_bc: Annotated[bool, Parameter("flux cycling", ignored="scalar diffusion only")] = False
-    auto_cycle_use_minmax: Annotated[bool, Parameter("flux cycling", ignored="scalar diffusion only")] = False
-    auto_cycle_max: Annotated[float, Parameter("flux cycling", ignored="scalar diffusion only")] = 0.9
-    auto_cycle_min: Annotated[float, Parameter("flux cycling", ignored="scalar diffusion only")] = 0.1
+    with_gauss_solver: Annotated[
+        bool, Parameter("find the electric field of ions", unsupported="charged diffusion")
+    ] = False
+    do_auto_cycle_bc: Annotated[
+        bool, Parameter("turn the flux at limits of the concentration", unsupported="cycling of charge")
+    ] = False
+    auto_cycle_use_minmax: Annotated[bool, Parameter("by extremes", ignored="do_auto_cycle_bc only")] = False
+    auto_cycle_max: Annotated[float, Parameter("upper limit", ignored="do_auto_cycle_bc only")] = 0.9
+    auto_cycle_min: Annotated[float, Parameter("lower limit", ignored="do_auto_cycle_bc only")] = 0.1
     water_damping_coef: Annotated[float, Parameter("of pore water", ignored="coupled flow only")] = 0.0
     solid_damping_coef: Annotated[float, Parameter("of the skeleton", ignored="coupled flow only")] = 0.0
     pore_pressure_filter: Annotated[

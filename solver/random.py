@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,6 +119,39 @@ def weibull(
     """
     scale = mean / math.gamma(1.0 / modulus + 1.0)
     return size_effect(volume, reference, exponent) * scale * (-np.log(draws)) ** (1.0 / modulus)
+
+
+class WeibullLaw(NamedTuple):
+    """Weibull's distribution of strength with its size effect."""
+
+    mean: float
+    modulus: float
+    volume: float
+    """To which the mean belongs."""
+    seed: int
+
+
+def weibull_law(text: str) -> WeibullLaw | None:
+    """The distribution that a deck writes as "weibull, mean, modulus, reference volume, seed".
+
+    None where the text is empty or a number: one value for all.
+
+    Raises
+    ------
+    ValueError
+        when the text is neither empty, a number, nor the five parts of a Weibull distribution.
+    """
+    words = [word.strip() for word in text.strip().strip('"').split(",")]
+    if not words[0].lower().startswith("weib"):
+        if text.strip():
+            float(text)
+        return None
+    if len(words) != 5:
+        raise ValueError("a Weibull distribution has four numbers: mean, modulus, reference volume, seed")
+    law = WeibullLaw(float(words[1]), float(words[2]), float(words[3]), int(float(words[4])))
+    if law.modulus <= 0.0 or law.volume <= 0.0:
+        raise ValueError("modulus and reference volume of a Weibull distribution are positive")
+    return law
 
 
 def uniform(draws: Floats, middle: float, spread: float) -> Floats:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from solver.boundary_conditions import BoundaryConditions
 from solver.cohesive_zones import CohesiveZones
 from solver.contact.law import ContactLaw, ContactScene
+from solver.diffusion.solute import NoSolute
 from solver.flags import Flags
 from solver.grid import FACES, Grid, NodeBlock
 from solver.interpolation.shape import Sums
@@ -26,7 +27,16 @@ from solver.kernels import nodes, settle, stress, transfer
 from solver.kernels.chunks import number_of_chunks
 from solver.kernels.transfer import CHANNELS, EXTERNAL_FORCE, GATHERED, MOTION_SUMS, Transfer
 from solver.lanes import new_rows
-from solver.materials.constitutive import Material, Step, initial_sound_speed, numbers_only, time_step_limit
+from solver.materials.constitutive import (
+    Material,
+    Neighbourhood,
+    Step,
+    couple_particles,
+    initial_sound_speed,
+    is_coupled,
+    numbers_only,
+    time_step_limit,
+)
 from solver.materials.failure import Failure
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.particles import Particles, keep
@@ -59,6 +69,7 @@ class Body:
     state : the model's own arrays.
     particles : the particles.
     failure : how they are damaged, and what becomes of those that failed.
+    solute : what they carry of a diffusing substance.
     rigid : moves as contact tells it and carries no stress.
     transmits_force : feels no acceleration of its own (Uintah's force-transmitting material).
     activation_time : before this time the body neither weighs nor pushes.
@@ -73,6 +84,7 @@ class Body:
     state: Any
     particles: Particles
     failure: Failure
+    solute: Any = field(default_factory=NoSolute)
     rigid: bool = False
     transmits_force: bool = False
     activation_time: float = 0.0
@@ -91,11 +103,12 @@ class Body:
     @property
     def records(self) -> tuple[Any, ...]:
         """All arrays of the particles: NamedTuples whose fields declare how an archive calls them."""
-        return self.particles, self.state, self.failure.damage_state, self.failure.erosion_state
+        failure = self.failure
+        return self.particles, self.state, failure.damage_state, failure.erosion_state, self.solute
 
     @records.setter
     def records(self, records: tuple[Any, ...]) -> None:
-        self.particles, self.state, damage_state, erosion_state = records
+        self.particles, self.state, damage_state, erosion_state, self.solute = records
         self.failure = self.failure._replace(damage_state=damage_state, erosion_state=erosion_state)
 
 
@@ -113,6 +126,7 @@ class Simulation:
     after_boundary_conditions : calls made once v* and a are known: prescribed motion.
     after_step : calls made before particles are sorted out: inserted particles.
     time_step_limits : functions of the time that bound the step from there.
+    diffusion : the diffusion of a substance, which hooks let act; None without.
     spread_corner_loads : adds external forces by particle corners (CBDI), in place of particle weights.
     whole_grid : nodes that no particle touches take part too, for those who look at nodal values afterwards.
     team : the threads that share the loops over particles; the results do not depend on how many they are.
@@ -136,6 +150,7 @@ class Simulation:
     whole_grid: bool = False
     team: Team = field(default_factory=Team)
     cohesive_zones: list[CohesiveZones] = field(default_factory=list)
+    diffusion: Any = None
     time: float = 0.0
     step_number: int = 0
     reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
@@ -226,8 +241,13 @@ class Simulation:
         stable = math.inf
         for m, body in enumerate(self.bodies):
             cells = self._particle_cells(body)
+            neighbourhood = self._neighbourhood(body, dt)
             self._move(m, body, dt)
             stable = min(stable, self._update_stress(body, cells, dt))
+            if neighbourhood is not None:
+                change = couple_particles(body.model, body.state, body.particles, neighbourhood)
+                for material in (body.index, -1):
+                    self.reductions["StrainEnergy", material] += change
         for key, value in scene.reductions.items():
             self.reductions[key] = self.reductions.get(key, 0.0) + value
         for action in self.after_step:
@@ -322,6 +342,16 @@ class Simulation:
         sums = self._chunk_sums[:chunks]
         self.team.share(chunks, self.team.size_for(count), lambda first, last: work(first, last, sums))
         return sums
+
+    def complete(self, m: int, sums: Array) -> None:
+        """Add to nodal sums (N, components) of a body, in place, what nodes hold that are one and the same."""
+        if len(self._images[0]):
+            nodes.fold_images(sums, self._touched[m], *self._images)
+
+    def share(self, m: int, field: Array) -> None:
+        """Give nodes that are one and the same the value (N,) of the one on which conditions act, in place."""
+        if len(self._images[0]):
+            nodes.copy_to_images(field.reshape(-1, 1), self._touched[m], *self._images)
 
     def _share_images(self) -> None:
         """Periodic directions: image nodes follow their owners, on which contact and conditions acted."""
@@ -509,6 +539,12 @@ class Simulation:
         self._add("StrainEnergy", body, stressed.strain_energy)
         self._add("TotalVolumeDeformed", body, stressed.volume)
         return self._limit(body, stressed.wave_speed)
+
+    def _neighbourhood(self, body: Body, dt: float) -> Neighbourhood | None:
+        """Where the particles lie at the start of the step, for a model whose particles feel each other."""
+        if not is_coupled(body.model):
+            return None
+        return Neighbourhood(self.interpolator, self.grid.index, body.particles.position.copy(), dt)
 
     def _particle_cells(self, body: Body) -> Array:
         """Cells of the particles at the start of the step, x fastest, where pressure is stabilized."""

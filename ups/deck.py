@@ -13,6 +13,8 @@ from solver.cohesive_zones import CohesiveZone
 from solver.contact import CONTACT
 from solver.creation import GeometryObject
 from solver.declare import IntVector, Parameter, SubModel, Vector, one_of
+from solver.diffusion import DIFFUSION
+from solver.diffusion.interface import DIFFUSION_INTERFACE
 from solver.flags import Flags
 from solver.geometry.null import Null
 from solver.loads import LOAD
@@ -234,6 +236,8 @@ class MaterialSection:
     ] = True
     damage_model: Annotated[Any, SubModel(DAMAGE.name)] = None
     erosion: Annotated[Any, SubModel(EROSION.name)] = None
+    diffusion_model: Annotated[Any, SubModel(DIFFUSION.name)] = None
+    do_conc_reduction: Annotated[bool, Parameter("whether its particles count in TotalConc")] = False
     name: Annotated[str, Parameter("name of the material", attribute=True)] = ""
 
     @property
@@ -279,6 +283,7 @@ class MPMMaterials:
     material: Annotated[tuple[MaterialSection, ...], Parameter("a material")]
     contact: Annotated[tuple[Any, ...], SubModel(CONTACT.name, many=True)] = ()
     cohesive_zone: Annotated[tuple[CohesiveZone, ...], Parameter("zones that tie materials")] = ()
+    diffusion_interface: Annotated[tuple[Any, ...], SubModel(DIFFUSION_INTERFACE.name, many=True)] = ()
     thermal_contact: Annotated[Opaque | None, Parameter("materials exchange heat at nodes they share")] = None
 
 

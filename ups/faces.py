@@ -18,7 +18,7 @@ Complain = Callable[[str, str, Any], Exception]
 """(code, message, record) -> the exception to raise for a record of the deck."""
 
 SHAPES = ("circle", "annulus", "ellipse", "rectangle", "rectangulus")
-KINDS = {"velocity": "Velocity", "symmetric": "Symmetric", "temperature": "Temperature"}
+KINDS = {"velocity": "Velocity", "symmetric": "Symmetric", "temperature": "Temperature", "sd-type": "SD-Type"}
 
 
 def regions(section: BoundaryConditionSection, materials: int, complain: Complain) -> list[Region]:

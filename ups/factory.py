@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from solver.contact.law import ContactLaw
@@ -211,6 +212,8 @@ class _Builder:
         self._attach_motions(simulation)
         self._attach_cohesive_zones(simulation)
         self._attach_conversion(simulation, loads)
+
+        self._attach_diffusion(simulation, loads, creations)
         return simulation
 
     # ---- parts ---------------------------------------------------------------------------------------------
@@ -235,7 +238,6 @@ class _Builder:
             "refine_particles": flags.refine_particles,
             "DoGranularMPM": flags.granular,
             "RunMMSProblem": bool(flags.manufactured_solution),
-            "do_scalar_diffusion": flags.scalar_diffusion,
             "coupled_flow_analysis": flags.coupled_flow,
         }
         for what, wanted in asked.items():
@@ -465,3 +467,25 @@ class _Builder:
 
         if targets:
             simulation.after_step.append(convert)
+
+    def _attach_diffusion(self, simulation: Any, loads: Loads | None, creations: list[Creation]) -> None:
+        """Concentrations of all materials, once the particles know their load curves."""
+        from solver.diffusion.diffusion import Diffusion, new_solute
+
+        section = self.spec.MaterialProperties.MPM
+        if not self.flags.scalar_diffusion:
+            return
+        count = len(section.material)
+        for interface in section.diffusion_interface:
+            self._guard("UPS402", interface, partial(interface.check, count))
+        for material in section.material:
+            if material.diffusion_model is None:
+                message = "do_scalar_diffusion needs a <diffusion_model> in every material"
+                raise ProblemError("UPS101", message, self.place(material), 'add <diffusion_model type="jg">')
+        laws = [material.diffusion_model for material in section.material]
+        for body, creation, law in zip(simulation.bodies, creations, laws, strict=True):
+            body.solute = new_solute(creation, law, simulation.grid)
+        fluxes = loads.fluxes if loads is not None else []
+        counted = [material.do_conc_reduction for material in section.material]
+        simulation.diffusion = Diffusion(laws, section.diffusion_interface, fluxes, counted)
+        simulation.diffusion.attach(simulation)

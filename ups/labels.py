@@ -1,4 +1,4 @@
-"""Labels of Uintah that a deck may name in ``<save>`` although this program does not compute them."""
+"""Labels of Uintah: those that a deck may name in ``<save>``, and where a concentration at nodes is found."""
 
 from __future__ import annotations
 
@@ -52,3 +52,16 @@ KNOWN_LABELS: frozenset[str] = frozenset(
     [f"p.{name}" for name in _PARTICLES.split()] + [f"g.{name}" for name in _NODES.split()] + _OTHERS.split()
 )
 """To save one of these where a deck does not provide it is worth a warning; any other is a mistake."""
+
+CONCENTRATIONS = {
+    "g.concentration": "concentration",
+    "g.concentrationnobc": "projected",
+    "g.concentrationRate": "rate",
+    "g.concentrationStar": "star",
+    "g.hydrostaticStressRD": "mean_stress",
+    "g.externalscalarflux": "external",
+}
+"""Label -> field of solver.diffusion.interface.NodalConcentration."""
+
+TOTAL_CONCENTRATION = "TotalConc"
+"""The sum of the concentrations of the particles of materials with ``do_conc_reduction``."""

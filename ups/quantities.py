@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from solver.cohesive_zones import ZoneState
 from solver.contact.motion import PrescribedMotion
+from solver.diffusion.solute import Solute
 from solver.materials.constitutive import state_record
 from solver.materials.damage import damage_state
 from solver.materials.erosion import ErosionState
@@ -18,6 +19,7 @@ from solver.particles import Particles, StateVariable, state_variables
 from ups.archive import Variable
 from ups.archive.variables import GLOBAL_MATERIAL, NODE, PARTICLE, REDUCTION
 from ups.deck import Specification
+from ups.labels import CONCENTRATIONS, TOTAL_CONCENTRATION
 
 if TYPE_CHECKING:
     from solver.grid import Grid
@@ -138,6 +140,10 @@ def particle_quantities(specification: Specification) -> dict[str, Quantity]:
         label: Quantity(Variable(label, PARTICLE, variable.element), tuple(where), _of_records(where))
         for label, (variable, where) in _kept_in(records).items()
     }
+    if specification.MPM.scalar_diffusion:
+        for name, variable in state_variables(Solute).items():
+            declared = Variable(variable.label, PARTICLE, variable.element)
+            found[variable.label] = Quantity(declared, bodies, _of_solute(name))
     found["p.scalefactor"] = Quantity(
         Variable("p.scalefactor", PARTICLE, "Matrix3"), bodies, _particle_edges, False
     )
@@ -173,6 +179,10 @@ def _of_records(where: Mapping[int, tuple[int, str]]) -> Callable[[Simulation, i
     return values
 
 
+def _of_solute(name: str) -> Callable[[Simulation, int], Array]:
+    return lambda simulation, m: np.asarray(getattr(simulation.bodies[m].solute, name))
+
+
 def _particle_edges(simulation: Simulation, m: int) -> Array:
     """Deformed edge vectors of the particles as columns, F diag(h) R: (n, 3, 3), lengths of the deck."""
     particles = simulation.bodies[m].particles
@@ -193,6 +203,9 @@ def nodal_quantities(specification: Specification, stress: StressHolder) -> dict
     found[STRESS_AT_NODES] = Quantity(
         Variable(STRESS_AT_NODES, NODE, "Matrix3"), with_all, _stress_at_nodes(stress), False
     )
+    if specification.MPM.scalar_diffusion:
+        for label, field in CONCENTRATIONS.items():
+            found[label] = Quantity(Variable(label, NODE, "double"), each, _of_diffusion(field), False)
     found["NC_CCweight"] = Quantity(Variable("NC_CCweight", NODE, "double"), (0,), _node_to_cell_weight)
     return found
 
@@ -203,6 +216,13 @@ def _of_nodes(field: str, mean: Callable[[Any, Array], Array] | None) -> Callabl
         if mean is not None and m >= len(simulation.bodies):
             return on_lattice(simulation.grid, mean(simulation.nodal, nodal))
         return on_lattice(simulation.grid, nodal[m])
+
+    return values
+
+
+def _of_diffusion(field: str) -> Callable[[Simulation, int], Array]:
+    def values(simulation: Simulation, m: int) -> Array:
+        return on_lattice(simulation.grid, getattr(simulation.diffusion.nodal, field)[m])
 
     return values
 
@@ -266,6 +286,8 @@ def sums(specification: Specification) -> dict[str, Sum]:
     if any(isinstance(law, PrescribedMotion) for law in section.contact):
         by_material |= REACTIONS
     over_all = dict(SUMS_OVER_ALL)
+    if specification.MPM.scalar_diffusion:
+        over_all[TOTAL_CONCENTRATION] = "double"
     for face in specification.MPM.boundary_traction_faces:
         over_all |= {f"{name}_{face}": element for name, element in (ON_FACES | TRACTIONS).items()}
     found = {n: Sum(Variable(n, REDUCTION, element), everything) for n, element in by_material.items()}

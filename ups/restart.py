@@ -52,7 +52,7 @@ class RunState:
     next_checkpoint: tuple[float, int]
 
 
-KINDS = ("particles", "state", "damage", "erosion")
+KINDS = ("particles", "state", "damage", "erosion", "solute")
 """The records of a body, in its order; cohesive zones have one, of the first kind."""
 
 

@@ -25,6 +25,7 @@ COLUMNS = {
     "p.velocity": 3,
     "p.loadCurveID": 3,
     "p.normal": 3,
+    "p.concentration": 1,
 }
 """Variables that a file can hold after the position, and the number of columns of each."""
 
@@ -35,6 +36,7 @@ FIELDS = {
     "p.velocity": "velocity",
     "p.loadCurveID": "load_curve",
     "p.normal": "normal",
+    "p.concentration": "concentration",
 }
 """Variables that are handed on as they are, and the names that particles have for them."""
 

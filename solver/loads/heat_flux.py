@@ -37,7 +37,7 @@ class HeatFlux(Load):
     geom_object: Annotated[LoadedSurface, Parameter("the heated surface: a box, cylinder or sphere")]
 
     tag: ClassVar[str] = "heat_flux"
-    rank: ClassVar[int] = 3
+    rank: ClassVar[int] = 4
     heats: ClassVar[bool] = True
 
     def __post_init__(self) -> None:

@@ -33,6 +33,8 @@ class Load:
     """Place of the kind of load in the order in which Uintah numbers load curves."""
     heats: ClassVar[bool] = False
     """Whether the load is a rate of heat instead of a force."""
+    soaks: ClassVar[bool] = False
+    """Whether the load is a flux of a diffusing substance."""
     along_particle_normals: ClassVar[bool] = False
     """Whether the force acts along the normals of a particle file."""
     follows_rotation: ClassVar[bool] = False
@@ -53,7 +55,7 @@ class Load:
         return np.zeros(len(points), bool)
 
     def law(self, grid: Grid) -> Any:
-        """The direction law for the kernels (see ``solver.loads.direction``); None for heat."""
+        """The direction law for the kernels (see ``solver.loads.direction``); None for what is no force."""
         raise NotImplementedError
 
     def magnitude(self, time: float, count: int) -> float:

@@ -68,6 +68,11 @@ class Loads:
         self.counts = {load.load_curve.id: load.particles_on_surface for load in self._loads}
         self.notices = doubts(self._loads, grid)
 
+    @property
+    def fluxes(self) -> list[Any]:
+        """The fluxes of a diffusing substance, which :meth:`apply` leaves to ``solver.diffusion``."""
+        return [load for load in self._loads if load.soaks]
+
     def __len__(self) -> int:
         """The number of loads."""
         return len(self._loads)
@@ -196,7 +201,9 @@ class Loads:
         return [
             _Acting(load, law, self._action(load))
             for load, law in zip(self._loads, self._laws, strict=True)
-            if load.load_curve.id in self._carried[material] and self.counts[load.load_curve.id] > 0
+            if load.load_curve.id in self._carried[material]
+            and self.counts[load.load_curve.id] > 0
+            and not load.soaks
         ]
 
     def _action(self, load: Load) -> Action:
@@ -217,7 +224,8 @@ class Loads:
                     f"two loads have a load curve with id {curve}: give every load curve its own id"
                 )
             seen.add(curve)
-            if self._on_corners and not load.heats and load.surface_normal_points_outward is None:
+            pushes = not load.heats and not load.soaks
+            if self._on_corners and pushes and load.surface_normal_points_outward is None:
                 raise ValueError(
                     f"<{load.tag}> with load curve {curve} needs <outward_normal>, true or false, because "
                     "use_CBDI_boundary_condition is true"

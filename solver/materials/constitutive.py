@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.dispatch import generic, inline
+from solver.grid import GridIndex
 from solver.particles import Particles
 from solver.tensor import Tensor
 
@@ -113,6 +114,31 @@ def numbers_only(model: Any) -> Any:
     if isinstance(model, tuple) and hasattr(model, "_fields"):
         return type(model)(*map(numbers_only, model))
     return model
+
+
+class Neighbourhood(NamedTuple):
+    """Where the particles of a body lay at the start of a step, for models whose particles feel each other."""
+
+    interpolator: Any
+    grid: GridIndex
+    position: NDArray[np.float64]
+    """(n, 3)."""
+    dt: float
+
+
+@singledispatch
+def couple_particles(model: Any, state: Any, particles: Particles, neighbourhood: Neighbourhood) -> float:
+    """Correct the stresses of a step by what the particles of the body do together; most models do not.
+
+    Called once all particles of a body went through :func:`stress_update`, whose answers are in ``particles``
+    and ``state``; both are updated in place. Returns what that adds to the strain energy.
+    """
+    return 0.0
+
+
+def is_coupled(model: Any) -> bool:
+    """Whether the particles of a model feel each other beside the grid."""
+    return type(model) in couple_particles.registry
 
 
 class NoState(NamedTuple):

@@ -274,6 +274,7 @@ class Flow(NamedTuple):
 
 
 @implements(stress_update, ElasticPlastic)
+@inline
 def elastic_plastic_stress(
     model: ElasticPlastic, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

@@ -23,7 +23,45 @@ LOADS = """
       <time_point><time>1</time><load>2e4</load></time_point></load_curve>
   </pressure></MPM></PhysicalBC>"""
 
+DIFFUSING = (
+    material(
+        "[0.1,0.1,0.0]",
+        "[0.4,0.4,0.1]",
+        "[1.0,0.0,0.0]",
+        """<constitutive_model type="gao_elastic"><bulk_modulus>32.e6</bulk_modulus>
+      <shear_modulus>12.e6</shear_modulus><alpha>0.02</alpha></constitutive_model>
+    <diffusion_model type="non_linear1"><diffusivity>2.0</diffusivity><max_concentration>1.0</max_concentration>
+      <use_pressure>true</use_pressure><tuning1>1.0</tuning1><tuning2>0.3</tuning2><tuning3>0.0</tuning3>
+      <tuning4>3.0</tuning4><tuning5>1e-4</tuning5></diffusion_model>""",
+    )
+    .replace("<color>", "")
+    .replace("</geom_object>", "<concentration>0.2</concentration></geom_object>")
+)
+SOAKING = (
+    LOADS.replace("pressure>", "scalar_flux>").replace("0.69,", "0.3999,").replace("0.7,0.4", "0.4001,0.4")
+)
+
+NONLOCAL = """<constitutive_model type="nonlocal_drucker_prager"><bulk_modulus>32.e6</bulk_modulus>
+  <shear_modulus>12.e6</shear_modulus><alpha>0.1</alpha><alpha_p>0.0</alpha_p><k_o>1.e5</k_o>
+  <h_nonlocal>-1.e6</h_nonlocal><l_nonlocal>0.15</l_nonlocal></constitutive_model>"""
+
 DECKS = {
+    "nonlocal": deck(
+        archiver=CHECKPOINTS,
+        time="<max_Timesteps>12</max_Timesteps>",
+        materials=material("[0.2,0.1,0.0]", "[0.6,0.4,0.1]", "[0,0,0]", NONLOCAL)
+        + LEFT.replace("[0.1,0.1,0.0]", "[0.0,0.1,0.0]").replace("[0.4,0.4,0.1]", "[0.2,0.4,0.1]")
+        + CONTACT,
+        saves=(*SAVES, "p.plasticStrain", "eta_nl"),
+    ),
+    "diffusing": deck(
+        archiver=CHECKPOINTS,
+        time="<max_Timesteps>12</max_Timesteps>",
+        materials=DIFFUSING,
+        flags="<use_load_curves>true</use_load_curves><do_scalar_diffusion>true</do_scalar_diffusion>",
+        extra=SOAKING.replace("1e4", "1e-1").replace("2e4", "2e-1"),
+        saves=("p.x", "p.concentration", "p.flux", "p.area", "p.swelling", "g.concentration", "TotalConc"),
+    ),
     "contact": deck(archiver=CHECKPOINTS, time="<max_Timesteps>12</max_Timesteps>"),
     "plastic": deck(
         archiver=CHECKPOINTS,
@@ -150,3 +188,14 @@ def test_what_cannot_be_gone_on_with(tmp_path: Path, shared: Path) -> None:
     assert "time step 7 is not stored; there are: 6, 11" in problem_of(tmp_path / "some", step=7).replace(
         "\n  = ", "; "
     )
+
+
+def test_neighbours_soften_each_other_in_a_run(tmp_path: Path) -> None:
+    result = run_deck(read_deck(write(tmp_path, DECKS["nonlocal"])), output=tmp_path / "nonlocal.uda")
+    archive = Archive(result.directory)
+    last = archive.timesteps[-1].step
+    strain = archive.particles(last, "p.plasticStrain", 0)
+    softened = archive.particles(last, "eta_nl", 0)
+    assert strain.max() > 0.0
+    assert (softened[strain == 0.0] < 0.0).any()  # by the flow around
+    assert softened.min() > -1.0e6 * strain.max()

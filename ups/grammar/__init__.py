@@ -19,7 +19,6 @@ Class = TypeVar("Class", bound=type)
 EXTENSIONS: dict[str, str] = {
     "ups.deck:Specification": "ups.grammar.sections:MpmSections",
     "ups.deck:MaterialProperties": "ups.grammar.sections:MaterialPropertiesExtension",
-    "ups.deck:MPMMaterials": "ups.grammar.mpm_material:MaterialsExtension",
     "ups.deck:MaterialSection": "ups.grammar.mpm_material:MaterialExtension",
     "ups.deck:DataArchiver": "ups.grammar.data_archiver:DataArchiverExtension",
     "ups.deck:BoundaryConditionSection": "ups.grammar.boundary_conditions:BoundaryConditionsExtension",
@@ -32,7 +31,7 @@ EXTENSIONS: dict[str, str] = {
 }
 """Record, as ``module:Class`` -> the section that holds the tags which this program does not run."""
 
-_PACKAGES = ("constitutive_model", "geometry", "load")
+_PACKAGES = ("constitutive_model", "diffusion", "diffusion_interface", "geometry", "load")
 _KNOWN: dict[str, dict[str, type]] = {}
 
 

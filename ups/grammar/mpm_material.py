@@ -16,14 +16,6 @@ class MaterialExtension(Section):
 
     damage_model: Annotated[Any, SubModel(DAMAGE.name)] = None
     erosion: Annotated[Any, SubModel(EROSION.name)] = None
-    diffusion_model: Annotated[
-        Any,
-        SectionOf("ups.grammar.diffusion:DiffusionModel"),
-        Parameter("diffusion of a scalar", unsupported="scalar diffusion"),
-    ] = None
-    do_conc_reduction: Annotated[
-        bool, Parameter("reduce the concentration over the domain", unsupported="scalar diffusion")
-    ] = False
     water_density: Annotated[
         float, Parameter("density of the pore water", unit="kg/m^3", ge=0.0, unsupported="coupled flow")
     ] = 1000.0
@@ -47,13 +39,3 @@ class MaterialExtension(Section):
     deactivation_time: Annotated[
         float, Parameter("time from which the material takes no part", unit="s", ignored=_UNREAD)
     ] = 0.0
-
-
-class MaterialsExtension(Section):
-    """What the materials of the material point method may hold besides materials and contact."""
-
-    diffusion_interface: Annotated[
-        Any,
-        SectionOf("ups.grammar.diffusion:DiffusionInterface", many=True),
-        Parameter("exchange of a scalar between materials", unsupported="scalar diffusion"),
-    ] = ()

@@ -57,7 +57,6 @@ p.eve | elastic volume strain |
 p.capX | hydrostatic strength | Pa
 p.kappa | where the cap begins | Pa
 p.porePressure | pressure of the pore fluid | Pa
-p.concentration | concentration of a scalar |
 cz.area | area of a cohesive zone | m^2
 cz.norm | normal of a cohesive zone, from the bottom to the top material |
 cz.tang | first tangent of a cohesive zone |
@@ -69,6 +68,16 @@ cz.failed | 0 while a cohesive zone is sound, then steps of opening since it fai
 cz.topmat | index of the top material of a cohesive zone |
 cz.botmat | index of the bottom material of a cohesive zone |
 cz.CZID | number that tells cohesive zones apart |
+p.concentration | concentration of a diffusing substance |
+p.concPrevious | the same, one step earlier |
+p.concentrationGradient | its gradient | 1/m
+p.flux | flux of the substance, up the gradient | m/s
+p.diffusivity | diffusion coefficient | m^2/s
+p.externalScalarFlux | rate of the concentration by fluxes through the surface | 1/s
+p.area | sides of particles that carry a load, across x, y and z | m^2
+p.swelling | logarithmic strain by a diffusing substance |
+p.p_c | preconsolidation of clay | Pa
+p.elasticStrain | elastic strain |
 g.mass | mass at nodes | kg
 g.volume | volume at nodes | m^3
 g.velocity | velocity at nodes at the start of the step | m/s
@@ -80,6 +89,9 @@ g.temperature | temperature at nodes | K
 g.temperatureRate | rate of the temperature at nodes | K/s
 g.stressFS | stress at nodes, averaged by volume | Pa
 g.color | color at nodes |
+g.concentration | concentration at nodes at the start of the step |
+g.concentrationStar | concentration at nodes at the end of the step |
+g.concentrationRate | rate of the concentration at nodes | 1/s
 g.surfnorm | normal of a body's surface at nodes |
 g.contact | 1 where bodies touch |
 KineticEnergy | kinetic energy of all particles | J

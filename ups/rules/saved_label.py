@@ -9,6 +9,7 @@ from solver.declare import Section
 from ups.diagnostics import Diagnostic, Fix, did_you_mean
 from ups.element import Attribute, Element
 from ups.grammar.saved_labels import LABELS, PATTERNS
+from ups.labels import CONCENTRATIONS, TOTAL_CONCENTRATION
 from ups.rules.rule import DeckView, Rule
 
 _ALWAYS = """
@@ -87,6 +88,7 @@ def _is_run(model: object) -> bool:
 
 def _provided(deck: DeckView) -> set[str]:
     """The labels that the material point method has for the deck's models."""
+    from solver.diffusion.solute import Solute
     from solver.materials.constitutive import state_record
     from solver.materials.erosion import ErosionState
     from solver.particles import Particles, state_variables
@@ -103,4 +105,7 @@ def _provided(deck: DeckView) -> set[str]:
         found.add("p.pressure")
     if deck.switch("MPM/use_cohesive_zones"):
         found |= {name for name in LABELS if name.startswith("cz.")}
+    if deck.switch("MPM/do_scalar_diffusion"):
+        found |= {variable.label for variable in state_variables(Solute).values()} | {*CONCENTRATIONS}
+        found.add(TOTAL_CONCENTRATION)
     return found - {""}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from solver.materials.arenisca.update import weibull_law
 from solver.materials.arenisca.yield_surface import limit_faults
+from solver.random import weibull_law
 
 
 def faults_of(model: Any) -> list[tuple[str, str]]:

@@ -20,7 +20,7 @@ from solver.materials.constitutive import (
     artificial_viscosity,
 )
 from solver.particles import Particles
-from solver.random import by_patch, size_effect, weibull
+from solver.random import by_patch, size_effect, weibull, weibull_law
 from solver.tensor import (
     Tensor,
     determinant,
@@ -196,34 +196,3 @@ def peaks(model: Any, particles: Particles, patch: Any) -> Any:
         return size_effect(particles.volume, law.volume, law.modulus) * law.mean
     draws = by_patch(patch, law.seed)[:, 0]
     return weibull(draws, law.mean, law.modulus, particles.volume, law.volume, law.modulus)
-
-
-class WeibullLaw(NamedTuple):
-    """Weibull's distribution of strength with its size effect."""
-
-    mean: float
-    modulus: float
-    volume: float
-    """To which the mean belongs."""
-    seed: int
-
-
-def weibull_law(text: str) -> WeibullLaw | None:
-    """The distribution in the text of a PEAKI1IDIST; None for one value for all.
-
-    Raises
-    ------
-    ValueError
-        when the text is neither empty, a number, nor the five parts of a Weibull distribution.
-    """
-    words = [word.strip() for word in text.strip().strip('"').split(",")]
-    if not words[0].lower().startswith("weib"):
-        if text.strip():
-            float(text)
-        return None
-    if len(words) != 5:
-        raise ValueError("a Weibull distribution has four numbers: mean, modulus, reference volume, seed")
-    law = WeibullLaw(float(words[1]), float(words[2]), float(words[3]), int(float(words[4])))
-    if law.modulus <= 0.0 or law.volume <= 0.0:
-        raise ValueError("modulus and reference volume of a Weibull distribution are positive")
-    return law

@@ -46,6 +46,13 @@ ZONES = """
       <cz_filename>zones.txt</cz_filename>
     </cohesive_zone>"""
 
+FICK = LEFT.replace(
+    "<geom_object>",
+    '<diffusion_model type="jg"><diffusivity>1e-6</diffusivity><max_concentration>1</max_concentration>'
+    "</diffusion_model><geom_object>",
+)
+DIFFUSES = "<do_scalar_diffusion>true</do_scalar_diffusion>"
+
 BREAKING = [
     ("UPS401", "error", with_box("[0.8,0.5,0.1]", "[0,0,0]"), "<upper>"),
     ("UPS401", "error", with_box("[0,0,0]", "[0.8,0.5,0.0]"), "in z"),
@@ -74,6 +81,8 @@ BREAKING = [
     ("UPS425", "warning", deck(materials=LEFT + RIGHT + CONTACT + ZONES), "use_cohesive_zones"),
     ("UPS426", "warning", deck(flags=CONVERTING), "no particle fails"),
     ("UPS418", "warning", deck(archiver=""), "interval"),
+    ("UPS427", "warning", deck(materials=FICK), "not true"),
+    ("UPS427", "error", deck(materials=FICK + RIGHT + CONTACT, flags=DIFFUSES), "needs a <diffusion_model>"),
     ("UPS502", "warning", deck(materials=LEFT.replace("12.e6", "90.e6")), "Poisson"),
     ("UPS502", "warning", deck(materials=LEFT.replace("<density>", "<melt_temp>200</melt_temp><density>")), "melts"),
     ("UPS503", "warning", deck(materials=LEFT.replace("[20.0,3.0,0.0]", "[9000,0,0]")), "speed of sound"),
@@ -102,6 +111,7 @@ def test_a_rule_finds_what_breaks_it(code, severity, text, part):
 
 GOOD = [
     deck(),
+    deck(materials=FICK, flags=DIFFUSES, saves=("p.x", "p.concentration", "g.concentration", "TotalConc")),
     deck(extra=PRESSURE, flags=LOADS_ON),
     deck().replace("<interpolator>linear", "<interpolator>gimp").replace("<patches>", EXTRA + "<patches>"),
     on_face("[0.0, 0.0, 0.0]"),

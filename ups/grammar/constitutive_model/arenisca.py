@@ -8,26 +8,6 @@ from ups.grammar import known
 _DISTRIBUTION = "distribution of PEAKI1, as weibull, mean, modulus, volume, seed"
 
 
-@known("constitutive_model", "nonlocal_drucker_prager")
-class NonlocalDruckerPrager(Section):
-    """Drucker and Prager's plasticity with softening averaged over a length."""
-
-    alpha: Annotated[float, Parameter("slope of the yield surface")]
-    alpha_p: Annotated[float, Parameter("slope of the plastic potential")]
-    k_o: Annotated[float, Parameter("cohesion", unit="Pa")]
-    bulk_modulus: Annotated[float, Parameter("bulk modulus", unit="Pa", gt=0.0)]
-    shear_modulus: Annotated[float, Parameter("shear modulus", unit="Pa", ge=0.0)]
-    l_nonlocal: Annotated[float, Parameter("length of the average", unit="m")] = 0.0
-    h_local: Annotated[float, Parameter("local hardening modulus", unit="Pa")] = 0.0
-    h_nonlocal: Annotated[float, Parameter("non-local hardening modulus", unit="Pa")] = 0.0
-    minimum_yield_stress: Annotated[float, Parameter("yield stress that is left", unit="Pa")] = 0.0
-    initial_xstress: Annotated[float, Parameter("stress in x at the start", unit="Pa")] = 0.0
-    initial_ystress: Annotated[float, Parameter("stress in y at the start", unit="Pa")] = 0.0
-    initial_zstress: Annotated[float, Parameter("stress in z at the start", unit="Pa")] = 0.0
-    hardening_type: Annotated[int, Parameter("law of the hardening")] = 0
-    k_o_dist: Annotated[str, Parameter("distribution of the cohesion")] = ""
-
-
 class CapModel(Section):
     """What the models of the family share."""
 

@@ -18,18 +18,12 @@ class ThreeFactorMooney(Section):
     he_PR: Annotated[float, Parameter("Poisson's ratio", ge=0.0, lt=0.5)]
 
 
-@known("constitutive_model", "SVK")
-class SaintVenantKirchhoff(Section):
-    """Saint Venant and Kirchhoff: the second Piola-Kirchhoff stress is linear in Green's strain."""
+@known("constitutive_model", "VUMAT")
+class Vumat(Section):
+    """A model in the form of a user routine of Abaqus."""
 
     YoungsModulus: Annotated[float, Parameter("Young's modulus", unit="Pa", ge=0.0)]
     PR: Annotated[float, Parameter("Poisson's ratio", ge=0.0, lt=0.5)]
-
-
-@known("constitutive_model", "VUMAT")
-class Vumat(SaintVenantKirchhoff):
-    """A model in the form of a user routine of Abaqus."""
-
     filename: Annotated[str, Parameter("file of the routine's data")]
 
 

@@ -1,0 +1,1 @@
+"""Loops of diffusion, compiled by numba."""

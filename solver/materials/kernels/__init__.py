@@ -1,0 +1,1 @@
+"""Loops of models whose particles feel each other, compiled by numba."""

@@ -1,0 +1,1 @@
+"""Interfaces of diffusion of Uintah that this program does not run."""
