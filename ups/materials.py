@@ -26,6 +26,7 @@ _CONTENT_OF = {
     "IsoElastic": ("constitutive_model", ""),
     "JohnsonCookDamage": ("damage_model", "johnson_cook"),
     "JCDamage": ("damage_model", "johnson_cook"),
+    "MaxwellWeichert": ("constitutive_model", "Maxwell_Weichert"),
     "TimeTemp": ("constitutive_model", ""),
     "ViscoSCRAM": ("constitutive_model", "visco_scram"),
 }
@@ -219,6 +220,9 @@ def _constants(parent: Element) -> Iterator[Constant]:
     """The constants of an element, each with the comment behind it."""
     for node, following in zip_longest(parent.content, parent.content[1:]):
         if isinstance(node, Element):
+            if node.children:
+                yield from _constants(node)
+                continue
             note = following.value if isinstance(following, Comment) else ""
             unit, source, remark = ([*map(str.strip, note.split(";", 2)), "", "", ""])[:3]
             yield Constant(node.tag, node.text, unit, materialdata.sources().get(source, source), remark)

@@ -41,7 +41,10 @@ def elements(path):
     """The model elements of a file, or its root, and the constants in them."""
     root = etree.parse(path).getroot()
     blocks = [child for child in root if isinstance(child.tag, str) and "type" in child.attrib]
-    return [(block, [c for c in block if isinstance(c.tag, str)]) for block in (blocks or [root])]
+    return [
+        (block, [c for c in block.iterdescendants() if isinstance(c.tag, str) and not len(c.findall("*"))])
+        for block in (blocks or [root])
+    ]
 
 
 def record_of(block):
@@ -140,6 +143,18 @@ def test_visco_scram_of_pbx_9501_is_read():
     assert [d for d in diagnostics if d.severity is not Severity.NOTE] == []
     shear = sum(getattr(section.constitutive_model, f"G{i}") for i in range(1, 6))
     assert shear == pytest.approx(3.235e9, rel=1e-3)  # Bennett et al.: the instantaneous modulus
+
+
+def test_the_relaxation_of_the_binder_is_read():
+    section, diagnostics = read(
+        '<material><include href="MaterialConstPBX9501Binder.xml"/><constitutive_model type="Maxwell_Weichert">'
+        '<include href="MaxwellWeichertPBX9501Binder.xml"/></constitutive_model></material>'
+    )
+    assert [d for d in diagnostics if d.severity is not Severity.NOTE] == []
+    modes = section.constitutive_model.viscoelastic_series.mode
+    assert [mode.relaxation_time for mode in modes] == pytest.approx([1.5 * 10.0**-k for k in range(1, 9)])
+    # Mas et al.: the modulus of the glass is reached from the rubber over nine decades of time
+    assert sum(mode.partial_shear_modulus for mode in modes) == pytest.approx(2.93e8, rel=0.01)
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ def test_materials_of_the_paper_are_there():
     names = {entry.name for entry in catalogue()}
     assert {"annealed_copper", "OFHC_copper", "4340_steel", "6061-T6_aluminium", "HY100_steel"} <= names
     assert {"S7_tool_steel", "Armco_iron", "tantalum", "tungsten", "uranium", "304_stainless_steel"} <= names
-    assert {"PBX_9501", "HMX", "Lexan"} <= names
+    assert {"PBX_9501", "PBX_9501_binder", "HMX", "Lexan", "cartridge_brass", "2024-T351_aluminium"} <= names
 
 
 def test_an_entry_lists_its_models_and_sources():
