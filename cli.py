@@ -502,6 +502,13 @@ def materials(name: str) -> None:
         print_catalogue(name)
 
 
+def _turns(context: click.Context, option: click.Parameter, given: str) -> tuple[float, ...]:
+    try:
+        return tuple(float(word) for word in given.split(","))
+    except ValueError:
+        raise click.BadParameter(f"{given!r} is neither a strain nor strains with commas between") from None
+
+
 MODES = ("uniaxial-stress", "uniaxial-strain", "simple-shear", "hydrostatic")
 
 
@@ -509,7 +516,14 @@ MODES = ("uniaxial-stress", "uniaxial-strain", "simple-shear", "hydrostatic")
 @click.argument("source", metavar="DECK|MATERIAL")
 @click.option("--material", type=int, default=0, metavar="INDEX", help="Material of the deck.")
 @click.option("--mode", type=click.Choice(MODES), default=MODES[0], show_default=True)
-@click.option("--strain", type=float, default=0.5, show_default=True, help="At the end; negative compresses.")
+@click.option(
+    "--strain",
+    default="0.5",
+    show_default=True,
+    callback=_turns,
+    metavar="STRAIN[,STRAIN...]",
+    help="At the end, or where the path turns: 0.2,0 unloads. Negative ones compress.",
+)
 @click.option("--strain-rate", type=float, default=1.0, show_default=True, help="In 1/s.")
 @click.option("--temperature", type=float, help="At the start, K; by default the material's room_temp.")
 @click.option("--isothermal", is_flag=True, help="Keep the temperature.")

@@ -7,7 +7,7 @@ does at one particle: no artificial viscosity, no conduction of heat, no inertia
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -23,6 +23,7 @@ from solver.materials.constitutive import (
     initialize,
     state_record,
     stress_update,
+    time_step_limit,
 )
 from solver.particles import Particles, new_arrays, state_variables
 from solver.tensor import determinant, put_tensor, tensor_at
@@ -107,16 +108,20 @@ class PointHistory:
 
 # ---- paths -------------------------------------------------------------------------------------------------
 
+Strains = float | Sequence[float]
+"""The strain at the end, or those at which a path turns, one after the other: (0.2, 0) unloads, (0.01, -0.01, 0) is a
+closed cycle."""
 
-def uniaxial(strain: float, rate: float, steps: int, *, free: bool) -> Path:
-    """Stretch along x to a logarithmic strain; y and z keep their length, or are ``free`` of stress."""
+
+def uniaxial(strain: Strains, rate: float, steps: int, *, free: bool) -> Path:
+    """Stretch along x by logarithmic strains; y and z keep their length, or are ``free`` of stress."""
     time, strains = _ramp(strain, rate, steps)
     F = np.tile(np.eye(3), (steps + 1, 1, 1))
     F[:, 0, 0] = np.exp(strains)
     return Path(time, strains, F, free_axes=(1, 2) if free else ())
 
 
-def simple_shear(strain: float, rate: float, steps: int) -> Path:
+def simple_shear(strain: Strains, rate: float, steps: int) -> Path:
     """Shear of planes normal to y along x: F = I + gamma e_x e_y."""
     time, strains = _ramp(strain, rate, steps)
     F = np.tile(np.eye(3), (steps + 1, 1, 1))
@@ -124,7 +129,7 @@ def simple_shear(strain: float, rate: float, steps: int) -> Path:
     return Path(time, strains, F, strain_name="engineering shear strain")
 
 
-def hydrostatic(strain: float, rate: float, steps: int) -> Path:
+def hydrostatic(strain: Strains, rate: float, steps: int) -> Path:
     """Equal stretch in all directions: J = exp(strain)."""
     time, strains = _ramp(strain, rate, steps)
     F = np.exp(strains / 3.0)[:, None, None] * np.eye(3)
@@ -156,12 +161,26 @@ def tabulated(time: Array, deformation_gradient: Array, steps: int) -> Path:
     return Path(fine - fine[0], np.log(stretch), F, strain_name="true strain along x")
 
 
-def _ramp(strain: float, rate: float, steps: int) -> tuple[Array, Array]:
-    """Times and strains of a constant rate, whose sign is the strain's."""
+def _ramp(strain: Strains, rate: float, steps: int) -> tuple[Array, Array]:
+    """Times and strains of a constant rate from turn to turn, each of which is the end of a step."""
     _positive(steps, "number of steps")
-    _positive(abs(strain), "strain")
+    turns = np.concatenate([[0.0], np.atleast_1d(np.asarray(strain, float))])
+    legs = np.abs(np.diff(turns))
+    _positive(float(len(legs)), "number of strains")
+    for leg in legs:
+        _positive(leg, "strain between two turns")
     _positive(abs(rate), "strain rate")
-    return np.linspace(0.0, abs(strain / rate), steps + 1), np.linspace(0.0, strain, steps + 1)
+    if steps < len(legs):
+        raise PointDriverError(f"{len(legs)} turns of the path need as many steps, not {steps}")
+    ends = np.concatenate([[0.0], np.cumsum(legs)])
+    at_turn = np.rint(steps * ends / ends[-1])
+    for n in range(1, len(at_turn)):
+        at_turn[n] = max(at_turn[n], at_turn[n - 1] + 1)
+    at_turn[-1] = steps
+    for n in range(len(at_turn) - 2, 0, -1):
+        at_turn[n] = min(at_turn[n], at_turn[n + 1] - 1)
+    path = np.interp(np.arange(steps + 1), at_turn, ends)
+    return path / abs(rate), np.interp(path, ends, turns)
 
 
 def _positive(value: float, name: str) -> None:
@@ -169,13 +188,13 @@ def _positive(value: float, name: str) -> None:
         raise PointDriverError(f"the {name} must be finite and not 0")
 
 
-PATHS: dict[str, Callable[[float, float, int], Path]] = {
+PATHS: dict[str, Callable[[Strains, float, int], Path]] = {
     "uniaxial-strain": lambda strain, rate, steps: uniaxial(strain, rate, steps, free=False),
     "uniaxial-stress": lambda strain, rate, steps: uniaxial(strain, rate, steps, free=True),
     "simple-shear": simple_shear,
     "hydrostatic": hydrostatic,
 }
-"""Paths of constant rate by name: (strain, rate in 1/s, steps) -> path."""
+"""Paths of constant rate by name: (strain or turns, rate in 1/s, steps) -> path."""
 
 
 # ---- the point ---------------------------------------------------------------------------------------------
@@ -388,6 +407,8 @@ def drive(
 ) -> PointHistory:
     """Take a point of a material along a path.
 
+    Steps longer than the model allows are cut into parts.
+
     Parameters
     ----------
     model : record of a constitutive model.
@@ -418,9 +439,12 @@ def drive(
     )
     driver.record(history, 0)
     for n in range(steps):
-        dt = path.time[n + 1] - path.time[n]
+        dt, F_old, F = path.time[n + 1] - path.time[n], *path.deformation_gradient[n : n + 2]
+        parts = math.ceil(dt / time_step_limit(model) - 1.0e-9)  # 0 where the model allows any step
         try:
-            driver.advance(path.deformation_gradient[n + 1], dt, isothermal)
+            for part in range(1, max(parts, 1) + 1):
+                share = part / max(parts, 1)
+                driver.advance(F_old + share * (F - F_old), dt / max(parts, 1), isothermal)
         except PointDriverError as problem:
             where = f"step {n + 1} of {steps}, {path.strain_name} {path.strain[n + 1]:.6g}"
             raise PointDriverError(f"{where}: {problem}") from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
@@ -52,7 +52,7 @@ def run_point(
     *,
     material: int = 0,
     mode: str = "uniaxial-stress",
-    strain: float = 0.5,
+    strain: float | Sequence[float] = 0.5,
     strain_rate: float = 1.0,
     temperature: float | None = None,
     isothermal: bool = False,
@@ -66,7 +66,8 @@ def run_point(
     ----------
     source : a deck (``.ups``), or the name of a material of the catalogue.
     material : index of the deck's material.
-    mode : one of ``MODES``. strain : at the end, negative in compression. strain_rate : 1/s.
+    mode : one of ``MODES``. strain_rate : 1/s.
+    strain : at the end, negative in compression; or the strains at which the path turns, one after the other.
     temperature : at the start, K; the material's ``room_temp`` without.
     isothermal : keep the temperature. steps : time steps.
     table : a file with rows of time and the nine components of F, row by row, in place of a mode.
@@ -187,7 +188,7 @@ def _material_of_deck(path: Path, index: int) -> MaterialSection:
     return materials[index]
 
 
-def _path(mode: str, strain: float, rate: float, steps: int) -> StrainPath:
+def _path(mode: str, strain: float | Sequence[float], rate: float, steps: int) -> StrainPath:
     from solver.point_driver import PATHS
 
     if mode not in PATHS:

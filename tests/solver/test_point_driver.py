@@ -15,6 +15,7 @@ from solver.materials.equation_of_state.default_hypo import DefaultHypo
 from solver.materials.flow_stress.isotropic_hardening import IsotropicHardening
 from solver.materials.hypo_elastic import HypoElastic
 from solver.materials.ideal_gas import IdealGas
+from solver.materials.visco_scram import ViscoScram
 from solver.materials.yield_condition.von_mises import VonMises
 from solver.point_driver import (
     PATHS,
@@ -40,6 +41,21 @@ MATERIAL = Material(
 )
 HYPO = HypoElastic(G=G, K=K)
 NEO_HOOKE = CompNeoHook(bulk_modulus=K, shear_modulus=G)
+SCRAM = ViscoScram(
+    0.3,
+    1e-3,
+    10.0,
+    300.0,
+    5e5,
+    0.35,
+    3e-5,
+    12.0,
+    *(944e6, 173.8e6, 521.2e6, 908.5e6, 687.5e6),
+    *(0.0, 7.32e3, 7.32e4, 7.32e5, 2.0e6),
+    Beta=1.5e-4,
+    Gamma=1.0,
+    DCp_DTemperature=3.3,
+)
 YIELD, HARDENING = 200.0e6, 1.0e9
 PLASTIC = ElasticPlastic(
     bulk_modulus=K,
@@ -215,3 +231,24 @@ def test_a_point_that_is_lost_names_its_step():
 def test_a_temperature_below_zero_is_refused():
     with pytest.raises(PointDriverError, match="temperature"):
         drive(HYPO, MATERIAL, hydrostatic(0.1, 1.0, 4), temperature=-1.0)
+
+
+def test_turns_of_a_path_are_ends_of_steps():
+    path = uniaxial([0.02, -0.01, 0.0], 2.0, 11, free=False)
+    assert path.time[-1] == pytest.approx(0.06 / 2.0)
+    assert {0.02, -0.01, 0.0} <= set(path.strain.tolist())
+    assert np.all(np.diff(path.time) > 0.0)
+    np.testing.assert_allclose(path.deformation_gradient[:, 0, 0], np.exp(path.strain))
+
+
+def test_an_elastic_cycle_comes_back():
+    history = drive(HYPO, MATERIAL, uniaxial((0.01, -0.005, 0.0), 1.0, 30, free=True))
+    np.testing.assert_allclose(history.stress[-1], 0.0, atol=1e-3)
+    assert history.stress[:, 0, 0].max() > 0.0 > history.stress[:, 0, 0].min()
+
+
+def test_steps_that_a_model_does_not_allow_are_cut():
+    path = uniaxial(-0.01, 100.0, 4, free=False)  # 25 microseconds a step; visco_scram allows one
+    coarse, fine = (drive(SCRAM, MATERIAL, uniaxial(-0.01, 100.0, n, free=False)) for n in (4, 100))
+    np.testing.assert_allclose(coarse.time, path.time)
+    np.testing.assert_allclose(coarse.stress[-1], fine.stress[-1], rtol=1e-3)
