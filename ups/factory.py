@@ -475,17 +475,17 @@ class _Builder:
         section = self.spec.MaterialProperties.MPM
         if not self.flags.scalar_diffusion:
             return
-        count = len(section.material)
+        materials = self.spec.materials
         for interface in section.diffusion_interface:
-            self._guard("UPS402", interface, partial(interface.check, count))
-        for material in section.material:
+            self._guard("UPS402", interface, partial(interface.check, len(materials)))
+        for material in materials:
             if material.diffusion_model is None:
                 message = "do_scalar_diffusion needs a <diffusion_model> in every material"
                 raise ProblemError("UPS101", message, self.place(material), 'add <diffusion_model type="jg">')
-        laws = [material.diffusion_model for material in section.material]
+        laws = [material.diffusion_model for material in materials]
         for body, creation, law in zip(simulation.bodies, creations, laws, strict=True):
             body.solute = new_solute(creation, law, simulation.grid)
         fluxes = loads.fluxes if loads is not None else []
-        counted = [material.do_conc_reduction for material in section.material]
+        counted = [material.do_conc_reduction for material in materials]
         simulation.diffusion = Diffusion(laws, section.diffusion_interface, fluxes, counted)
         simulation.diffusion.attach(simulation)

@@ -204,6 +204,7 @@ def swelling_metal_stress(
         meanstrain_nucleation=0.0,
         stddevstrain_nucleation=1.0,
         check_TEPLA_failure_criterion=False,
+        TEPLA_with_damage=False,
         check_max_stress_failure=model.check_max_stress_failure,
         critical_stress=model.critical_stress,
         tolerance=model.tolerance,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from solver.declare import Parameter, Section, SectionOf, SubModel
+from solver.declare import Parameter, Section, SubModel
 from solver.materials.damage import DAMAGE
 from solver.materials.erosion import EROSION
 
