@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from ups.archive import ArchiveError
     from ups.deck import Deck
     from ups.diagnostics import DeckError
     from ups.result import Result
@@ -24,17 +25,8 @@ FAULT, INTERRUPTED = 1, 130
 @contextmanager
 def _orderly(verbose: bool = False) -> Iterator[None]:
     """Print diagnostics instead of tracebacks, and leave with the exit status that fits."""
-    from ups.archive import ArchiveError
-    from ups.diagnostics import DeckError
-
     try:
         yield
-    except DeckError as problem:
-        _print_error(problem)
-        sys.exit(FAULT)
-    except ArchiveError as problem:
-        _print_error(_from_archive(problem))
-        sys.exit(FAULT)
     except KeyboardInterrupt:
         click.echo("interrupted", err=True)
         sys.exit(INTERRUPTED)
@@ -42,6 +34,7 @@ def _orderly(verbose: bool = False) -> Iterator[None]:
         sys.stderr.close()  # whoever read our output has gone; nothing is left to say
         sys.exit(FAULT)
     except Exception as problem:
+        _print_known(problem)
         if verbose:
             traceback.print_exc()
         click.echo(
@@ -52,7 +45,19 @@ def _orderly(verbose: bool = False) -> Iterator[None]:
         sys.exit(FAULT)
 
 
-def _from_archive(problem: Any) -> DeckError:
+def _print_known(problem: Exception) -> None:
+    """Print what is wrong with a deck or an archive, and leave; any other exception is not ours to explain."""
+    from ups.archive.errors import ArchiveError  # here, as commands that read no archive load none of it
+    from ups.diagnostics import DeckError
+
+    if isinstance(problem, ArchiveError):
+        problem = _from_archive(problem)
+    if isinstance(problem, DeckError):
+        _print_error(problem)
+        sys.exit(FAULT)
+
+
+def _from_archive(problem: ArchiveError) -> DeckError:
     from ups.diagnostics import DeckError, Diagnostics
 
     diagnostics = Diagnostics()

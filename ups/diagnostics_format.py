@@ -31,7 +31,9 @@ def render_text(
         at = diagnostic.location
         source = None
         if at is not None and sources is not None and at.file in sources:
-            lines = lines_of.setdefault(at.file, _LINE_END.split(sources[at.file]))
+            if at.file not in lines_of:
+                lines_of[at.file] = _LINE_END.split(sources[at.file])
+            lines = lines_of[at.file]
             source = lines[at.line - 1] if 0 < at.line <= len(lines) else None
         blocks.append(_text_block(diagnostic, source, colour))
     return "\n".join(blocks)
