@@ -223,6 +223,20 @@ def lint(decks: tuple[str, ...], from_input: bool, **options: Any) -> None:
 
 
 @main.command()
+def lsp() -> None:
+    """Serve an editor: findings, explanations, completion and repairs while typing (on standard in and out)."""
+    try:
+        import pygls  # noqa: F401 - only to see whether it is there
+    except ImportError:
+        message = "ups lsp needs pygls, which is not installed: pip install 'ups-mpm[lsp]'"
+        raise click.ClickException(message) from None
+    with _orderly():
+        from ups.lsp.server import serve
+
+        serve()
+
+
+@main.command()
 @click.argument("name")
 def explain(name: str) -> None:
     """Explain NAME: a tag, a model, a saved label, or a code such as UPS302."""

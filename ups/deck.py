@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -405,12 +405,14 @@ def read_deck(
     *,
     overrides: Iterable[tuple[str, str]] = (),
     text: str | None = None,
+    unsaved: Mapping[str, str] | None = None,
 ) -> Deck:
     """Read a deck with its includes, check it against the declarations, and return it with its diagnostics.
 
-    ``overrides`` are (path of tags, new text) pairs, e.g. ``("Time/maxTime", "1e-3")``.
+    ``overrides`` are (path of tags, new text) pairs, e.g. ``("Time/maxTime", "1e-3")``. ``text`` and
+    ``unsaved`` take the place of what files hold, see ``ups.document.read_document``.
     """
-    document = read_document(path, text=text)
+    document = read_document(path, text=text, unsaved=unsaved)
     diagnostics = Diagnostics(document.diagnostics)
     folder = Path(path).parent
     reader = Reader(diagnostics, lambda name: find_data_file(name, folder), document.complete)

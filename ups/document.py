@@ -8,7 +8,7 @@ include gives besides), or for what is in that element. Includes nest and may st
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -86,16 +86,19 @@ def read_document(
     path: str | os.PathLike[str],
     *,
     text: str | None = None,
+    unsaved: Mapping[str, str] | None = None,
     search: Iterable[str | os.PathLike[str]] = (),
     roots: tuple[str, ...] = DECK_ROOTS,
 ) -> Document:
     """Read a deck and all its includes.
 
     `text` is taken instead of the file's content when given (`path` then names it, and says where its
-    includes are). `search` are further folders to look for includes in (see `locate_include`). `roots` are
+    includes are). `unsaved` has texts to take instead of what files hold, by their real paths, as an editor
+    has them. `search` are further folders to look for includes in (see `locate_include`). `roots` are
     the tags that the root may have. Nothing is raised for bad input: see `Document.diagnostics`.
     """
-    return _DeckReader(tuple(Path(folder) for folder in search)).read(os.fspath(path), text, roots)
+    folders = tuple(Path(folder) for folder in search)
+    return _DeckReader(folders, unsaved or {}).read(os.fspath(path), text, roots)
 
 
 def locate_include(
@@ -135,8 +138,9 @@ def _candidates(href: str, including_file: Path, search: list[Path]) -> list[Pat
 class _DeckReader:
     """Reads one deck: the files it has met and the tree that grows from them."""
 
-    def __init__(self, search: tuple[Path, ...]) -> None:
+    def __init__(self, search: tuple[Path, ...], unsaved: Mapping[str, str]) -> None:
         self.search = search
+        self.unsaved = unsaved
         self.files: dict[str, SourceFile | None] = {}
         self.diagnostics = Diagnostics()
         self.includes: list[Include] = []
@@ -146,7 +150,7 @@ class _DeckReader:
         self.exhausted = False
 
     def read(self, name: str, text: str | None, roots: tuple[str, ...]) -> Document:
-        source = SourceFile(name, text) if text is not None else load_source(name, self.diagnostics)
+        source = SourceFile(name, text) if text is not None else self._load(name)
         self.files[name] = source
         parsed = parse_xml(source, self.diagnostics) if source else ParsedFile(complete=False)
         self.complete = self.complete and parsed.complete
@@ -164,6 +168,10 @@ class _DeckReader:
             parsed.before,
             parsed.after,
         )
+
+    def _load(self, name: str) -> SourceFile | None:
+        text = self.unsaved.get(os.path.realpath(name)) if self.unsaved else None
+        return load_source(name, self.diagnostics) if text is None else SourceFile(name, text)
 
     def _check_root(self, root: Element, roots: tuple[str, ...]) -> None:
         if root.tag in roots:
@@ -241,7 +249,7 @@ class _DeckReader:
             self.diagnostics.error("UPS012", f"the file includes itself: {loop}", href)
             return None
         if name not in self.files:
-            self.files[name] = load_source(name, self.diagnostics)
+            self.files[name] = self._load(name)
         source = self.files[name]
         return source if source and self._within_limits(source, href) else None
 

@@ -6,7 +6,7 @@ import inspect
 from collections.abc import Iterable, Iterator
 from typing import Any, get_args, get_origin
 
-from solver.declare import FAMILIES, FieldInfo, Parameter, fields, without_optional
+from solver.declare import FAMILIES, Family, FieldInfo, Parameter, fields, without_optional
 from ups.diagnostics import CODES, did_you_mean
 from ups.grammar import known_model, known_names
 from ups.grammar.index import Place, places
@@ -24,7 +24,8 @@ def explain(name: str) -> str | None:
     name = name.strip().strip("<>/")
     if name.upper() in all_codes():
         return explain_code(name.upper())
-    parts = [*_models(name), *_tags(name), *_label(name)]
+    label = explain_label(name)
+    parts = [*_models(name), *_tags(name), *([label] if label else [])]
     return "\n\n".join(parts) if parts else None
 
 
@@ -47,6 +48,11 @@ def all_codes() -> dict[str, str]:
     all_rules()
     _old_forms()
     return dict(sorted(CODES.items()))
+
+
+def is_code(name: str) -> bool:
+    """Whether a name is one of the codes."""
+    return name in all_codes()
 
 
 def explain_code(code: str) -> str:
@@ -75,7 +81,12 @@ def _models(name: str) -> Iterator[str]:
         record = family.models.get(family.old_names.get(name, name)) or known_model(family.name, name)
         if record is not None:
             runs = name in family.models or name in family.old_names
-            yield "\n".join(_model_lines(name, family.meaning, record, runs))
+            yield explain_model(name, family, record, runs)
+
+
+def explain_model(name: str, family: Family, record: type, runs: bool) -> str:
+    """The page of a model of a family: meaning, equation, source and parameters."""
+    return "\n".join(_model_lines(name, family.meaning, record, runs))
 
 
 def _model_lines(name: str, meaning: str, record: type, runs: bool) -> Iterator[str]:
@@ -175,13 +186,15 @@ def _default(info: FieldInfo) -> str:
 # ---- labels ------------------------------------------------------------------------------------------------
 
 
-def _label(name: str) -> Iterator[str]:
+def explain_label(name: str) -> str | None:
+    """What a variable of ``<save>`` means; None where there is none of that name."""
     from ups.grammar.saved_labels import LABELS
 
     label = LABELS.get(name)
-    if label is not None:
-        unit = f", in {label.unit}" if label.unit else ""
-        yield f'<save label="{name}"/>: {label.meaning or "a variable of another method"}{unit}'
+    if label is None:
+        return None
+    unit = f", in {label.unit}" if label.unit else ""
+    return f'<save label="{name}"/>: {label.meaning or "a variable of another method"}{unit}'
 
 
 def explain_command(name: str) -> tuple[str, int]:

@@ -34,8 +34,13 @@ def repaired(
         if fix is None or not (fix.safe or unsafe):
             continue
         chosen.append(replace(diagnostic, fix=replace(fix, safe=True)))
-    own = {name for name in sources if Path(name).resolve().is_relative_to(_OWN_DATA)}
+    own = {name for name in sources if is_own_data(name)}
     return apply_fixes(chosen, {name: text for name, text in sources.items() if name not in own})
+
+
+def is_own_data(name: str) -> bool:
+    """Whether a file is one of the program's own, which repairs leave alone."""
+    return Path(name).resolve().is_relative_to(_OWN_DATA)
 
 
 def write(texts: Mapping[str, str]) -> None:

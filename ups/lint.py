@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -38,14 +38,17 @@ class LintResult:
     decks: int = 0
 
 
-def lint_deck(path: str | os.PathLike[str], text: str | None = None) -> Deck:
+def lint_deck(
+    path: str | os.PathLike[str], text: str | None = None, *, unsaved: Mapping[str, str] | None = None
+) -> Deck:
     """Read a deck and add to its diagnostics everything that the rules find.
 
-    ``text`` is taken instead of the file's content where it is given.
+    ``text`` is taken instead of the file's content where it is given; ``unsaved`` does the same for any file of
+    the deck, by its real path.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of numbers that no body has; findings say it better
-        deck = read_deck(path, text=text)
+        deck = read_deck(path, text=text, unsaved=unsaved)
         _apply_rules(deck)
     return deck
 

@@ -10,6 +10,8 @@ from ups.element import Element
 from ups.rules.rule import DeckView, Rule
 from ups.values import numbers
 
+_REACHING_ONE_CELL = ("gimp", "cpdi", "fast_cpdi", "cpti", "3rdorderBS")
+
 
 class ExtraCells(Rule):
     """The extra cells around the grid do not fit the interpolator.
@@ -41,7 +43,7 @@ class ExtraCells(Rule):
                 if any(extra) and deck.component == "mpm":
                     yield self._finding_at(box, [0, 0, 0], "the linear interpolator takes no extra cells")
                 continue
-            if name == "4thorderBS":
+            if name not in _REACHING_ONE_CELL:
                 continue
             total = [e + p for e, p in zip(extra, periodic, strict=True)]
             if total != [1, 1, 1] and not (axisymmetric and total == [1, 1, 0]):
