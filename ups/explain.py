@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterable, Iterator
+from textwrap import indent
 from typing import Any, get_args, get_origin
 
+import solver.interpolation  # noqa: F401 - a family that no record of a deck names: its models are words
 from solver.declare import FAMILIES, Family, FieldInfo, Parameter, fields, without_optional
 from ups.diagnostics import CODES, did_you_mean
+from ups.examples import example_of_model, example_of_tag
 from ups.grammar import known_model, known_names
 from ups.grammar.index import Place, places
 
@@ -19,13 +22,15 @@ def explain(name: str) -> str | None:
     """Everything that is known under a name, as text; None where there is nothing.
 
     ``name`` is a code (UPS102), a tag (``<density>`` or density), an attribute, a model, a path such as
-    ``material/density``, or a label of ``<save>``.
+    ``material/density``, a word that a tag chooses from, or a label of ``<save>``.
     """
     name = name.strip().strip("<>/")
-    if name.upper() in all_codes():
+    if is_code(name.upper()):
         return explain_code(name.upper())
+    places()  # the walk over the language meets, and so loads, the families of all models
     label = explain_label(name)
     parts = [*_models(name), *_tags(name), *([label] if label else [])]
+    parts = parts or list(_words(name))
     return "\n\n".join(parts) if parts else None
 
 
@@ -34,7 +39,7 @@ def suggestion(name: str) -> str | None:
     from ups.grammar.saved_labels import LABELS
 
     tags = {place.tag for place in places()}
-    models = {n for family in FAMILIES.values() for n in (*family.models, *known_names(family.name))}
+    models = {n for family in list(FAMILIES.values()) for n in (*family.models, *known_names(family.name))}
     return did_you_mean(name, [*sorted(tags), *sorted(models), *LABELS, *all_codes()])
 
 
@@ -81,22 +86,36 @@ def _models(name: str) -> Iterator[str]:
         record = family.models.get(family.old_names.get(name, name)) or known_model(family.name, name)
         if record is not None:
             runs = name in family.models or name in family.old_names
-            yield explain_model(name, family, record, runs)
+            example = example_of_model(family, family.old_names.get(name, name), record)
+            page = explain_model(name, family, record, runs)
+            yield f"{page}\n  example:\n{indent(example, '    ')}"
 
 
 def explain_model(name: str, family: Family, record: type, runs: bool) -> str:
     """The page of a model of a family: meaning, equation, source and parameters."""
-    return "\n".join(_model_lines(name, family.meaning, record, runs))
+    return "\n".join(_model_lines(name, family, record, runs))
 
 
-def _model_lines(name: str, meaning: str, record: type, runs: bool) -> Iterator[str]:
-    yield f"{name}: {meaning}" + ("" if runs else " (known, not supported by ups run)")
+def _model_lines(name: str, family: Family, record: type, runs: bool) -> Iterator[str]:
+    yield f"{name}: {family.meaning}" + ("" if runs else " (known, not supported by ups run)")
+    yield f"  chosen by {_choice(name, family)}"
     yield from (f"  {line}".rstrip() for line in inspect.cleandoc(record.__doc__ or "").splitlines())
     own = fields(record)
     if own:
         yield "  parameters:"
         width = max(len(info.tag) for info in own)
         yield from (f"    {info.tag:{width}}  {describe(info)}" for info in own)
+
+
+def _choice(name: str, family: Family) -> str:
+    """How a deck chooses a model."""
+    if family.key == "tag":
+        return f"<{name}>"
+    if family.key == "text":
+        return f"<{family.tag}>{name}</{family.tag}>"
+    if family.key.startswith("@"):
+        return f'<{family.tag} {family.key[1:]}="{name}">'
+    return f"<{family.tag}> <{family.key}>{name}</{family.key}>"
 
 
 # ---- tags --------------------------------------------------------------------------------------------------
@@ -117,7 +136,16 @@ def _tags(name: str) -> Iterator[str]:
         where = list(dict.fromkeys(_where(p) for p in places_of))
         more = f" and {len(where) - _MOST_PLACES} more" if len(where) > _MOST_PLACES else ""
         unsupported = "" if any(p.runs for p in places_of) else " (known, not supported by ups run)"
-        yield f"{shown}: {text}{unsupported}\n  {kind} of {', '.join(where[:_MOST_PLACES])}{more}"
+        page = f"{shown}: {text}{unsupported}\n  {kind} of {', '.join(where[:_MOST_PLACES])}{more}"
+        example = example_of_tag(places_of[0].info, today, {p.parent for p in places_of})
+        yield f"{page}\n  example:\n{indent(example, '    ')}" if example else page
+
+
+def _words(name: str) -> Iterator[str]:
+    """The tags and attributes of which a word is one of the values."""
+    for place in {(p.tag, p.parent, p.info.parameter): p for p in places()}.values():
+        if name in place.info.parameter.choices:
+            yield f"{name}: a value of {place.tag} in {_where(place)}: {describe(place.info)}"
 
 
 def _where(place: Place) -> str:
