@@ -7,6 +7,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from ups.archive_size import readable_size, size_of_output
 from ups.deck import Specification, read_deck
 
 BYTES_A_PARTICLE = 700
@@ -17,8 +18,6 @@ BYTES_A_NODE = 250
 
 SECONDS_A_PARTICLE_STEP = 3.0e-7
 """Time that a particle takes in a step on one core, of a common model."""
-
-_UNITS = ("B", "kB", "MB", "GB", "TB")
 
 
 @dataclass(frozen=True)
@@ -126,28 +125,9 @@ def _outputs(specification: Specification, steps: int, step: float) -> int:
 
 
 def _bytes_an_output(specification: Specification, counts: dict[str, int]) -> int:
-    """Size of one output: doubles, with nine components for tensors and three for vectors.
-
-    ``counts`` has the number of values of labels by what these begin with.
-    """
-    width = 4 if specification.DataArchiver.outputDoubleAsFloat else 8
-    labels = [save.label for save in specification.DataArchiver.save]
-    return sum(
-        width * _components(label) * count
-        for label in labels
-        for prefix, count in counts.items()
-        if label.startswith(prefix)
-    )
-
-
-def _components(label: str) -> int:
-    if any(
-        word in label
-        for word in ("stress", "deformationMeasure", "velGrad", "size", "scalefactor", "rotation")
-    ):
-        return 9
-    vectors = ("p.x", "velocity", "disp", "force", "acceleration", "Gradient", "separation", "norm", "tang")
-    return 3 if any(word in label for word in vectors) else 1
+    """Size of one output; ``counts`` has the number of values of labels by what these begin with."""
+    archiver = specification.DataArchiver
+    return int(size_of_output((save.label for save in archiver.save), counts, single=archiver.outputDoubleAsFloat))
 
 
 def _lines(plan: RunPlan) -> Iterator[str]:
@@ -161,17 +141,9 @@ def _lines(plan: RunPlan) -> Iterator[str]:
     yield f"particles   {plan.particles}"
     yield f"first step  {plan.first_step:.4g}"
     yield f"steps       about {plan.steps}"
-    yield f"outputs     about {plan.outputs}, {_size(plan.archive)}"
-    yield f"memory      about {_size(plan.memory)}"
+    yield f"outputs     about {plan.outputs}, {readable_size(plan.archive)}"
+    yield f"memory      about {readable_size(plan.memory)}"
     yield f"computing   about {_duration(plan.seconds)} on one core"
-
-
-def _size(count: float) -> str:
-    """Bytes for reading."""
-    unit = 0
-    while count >= 1000.0 and unit < len(_UNITS) - 1:
-        count, unit = count / 1000.0, unit + 1
-    return f"{count:.3g} {_UNITS[unit]}"
 
 
 def _duration(seconds: float) -> str:

@@ -65,7 +65,11 @@ def test_a_cause_in_an_included_file_is_repaired_there(tmp_path):
     included = tmp_path / "damage.xml"
     included.write_text(f"<Uintah_Include>\n    {constants}\n</Uintah_Include>\n")
     path = tmp_path / "deck.ups"
-    before = deck(materials=METAL.replace("<geom_object>", '<include href="damage.xml"/><geom_object>'))
+    before = deck(
+        materials=METAL.replace(
+            "<geom_object>", '<include href="damage.xml"/><erosion algorithm="ZeroStress"/><geom_object>'
+        )
+    )
     path.write_text(before)
     assert [d.code for d in lint_files([path]).diagnostics] == ["UPS306"]
     result, done = fix_files([path])

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 from ups.diagnostics import Diagnostic, register_code
 from ups.element import Element
-from ups.rules.rule import DeckView, Rule
-from ups.values import numbers
+from ups.rules.rule import DeckView, Rule, periodic_axes
 
 _AXES = "xyz"
 
@@ -28,7 +27,7 @@ class ContradictingFaces(Rule):
 
     def check(self, deck: DeckView) -> Iterator[Diagnostic]:
         """Look at the conditions on whole faces."""
-        periodic = _periodic(deck)
+        periodic = periodic_axes(deck)
         given: dict[tuple[str, str, str], Element] = {}
         for face in deck.all("Grid/BoundaryConditions/Face"):
             side = face.attributes.get("side")
@@ -37,7 +36,9 @@ class ContradictingFaces(Rule):
             name = side.value.strip()
             if periodic[_AXES.index(name[0])] and face.children:
                 yield self.warning(
-                    f"the grid is periodic in {name[0]}: the face {name} has no condition", face
+                    f"the conditions on {name} do nothing: the grid is periodic in {name[0]}",
+                    face,
+                    "remove them",
                 )
             for condition in face.all("BCType"):
                 yield from self._compare(name, condition, given)
@@ -60,12 +61,3 @@ class ContradictingFaces(Rule):
 def _meaning(condition: Element) -> tuple[str, str]:
     kind, value = condition.attributes.get("var"), condition.get("value")
     return kind.value.strip() if kind is not None else "", value.text if value is not None else ""
-
-
-def _periodic(deck: DeckView) -> list[bool]:
-    for path in ("Grid/Level/periodic", "Grid/Level/Box/periodic"):
-        element = deck.find(path)
-        found = numbers(element.text) if element is not None else None
-        if found is not None and len(found) == 3:
-            return [bool(n) for n in found]
-    return [False] * 3

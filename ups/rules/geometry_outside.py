@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from ups.diagnostics import Diagnostic
 from ups.element import Element
-from ups.rules.rule import DeckView, Rule
+from ups.rules.bodies import bounding_box
+from ups.rules.rule import DeckView, Domain, Rule
 
 
 class GeometryOutside(Rule):
@@ -40,31 +40,23 @@ class GeometryOutside(Rule):
         ]
         for body in bodies:
             for shape in body.children:
-                bounds = _bounds(deck.record(shape))
-                if bounds is None:
-                    continue
-                lower, upper = bounds
-                outside = [
-                    axis
-                    for axis, a, b, low, high in zip(
-                        "xyz", lower, upper, domain.lower, domain.upper, strict=True
-                    )
-                    if a >= high or b <= low
-                ]
-                if outside:
-                    span = f"{_point(domain.lower)} to {_point(domain.upper)}"
-                    where = ", ".join(outside)
-                    message = f"{_name(shape)} lies outside the grid in {where}: the grid spans {span}"
-                    yield self.warning(message, shape)
+                bounds = bounding_box(deck.record(shape))
+                if bounds is not None:
+                    yield from self._compare(shape, bounds, domain)
 
-
-def _bounds(shape: Any) -> tuple[Any, Any] | None:
-    """The bounding box of a shape, or None where it has none that is finite."""
-    try:
-        lower, upper = shape.bounding_box()
-    except (AttributeError, NotImplementedError, ValueError, ArithmeticError, OSError):
-        return None
-    return (lower, upper) if all(b >= a for a, b in zip(lower, upper, strict=True)) else None
+    def _compare(
+        self, shape: Element, bounds: tuple[tuple[float, ...], tuple[float, ...]], domain: Domain
+    ) -> Iterator[Diagnostic]:
+        sides = zip("xyz", *bounds, domain.lower, domain.upper, strict=True)
+        outside = [axis for axis, a, b, low, high in sides if a >= high or b <= low]
+        if outside:
+            own, grid = _span(*bounds), _span(domain.lower, domain.upper)
+            message = (
+                f"{_name(shape)} from {own} lies outside the grid in {', '.join(outside)}, which spans {grid}"
+            )
+            yield self.warning(
+                message, shape, "move it into the grid, or extend the grid; are both in the same units?"
+            )
 
 
 def _name(shape: Element) -> str:
@@ -72,5 +64,6 @@ def _name(shape: Element) -> str:
     return f"<{shape.tag}>" if label is None else f"<{shape.tag}> {label.value!r}"
 
 
-def _point(point: list[float]) -> str:
-    return "[" + ", ".join(f"{x:g}" for x in point) + "]"
+def _span(lower: Sequence[float], upper: Sequence[float]) -> str:
+    corners = ("[" + ", ".join(f"{x:g}" for x in corner) + "]" for corner in (lower, upper))
+    return " to ".join(corners)

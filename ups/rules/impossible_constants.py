@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ups.diagnostics import Diagnostic
 from ups.element import Element
+from ups.rules.bodies import is_moved_from_outside, temperature_of
 from ups.rules.rule import DeckView, Rule
 from ups.values import number
 
@@ -31,7 +32,8 @@ class ImpossibleConstants(Rule):
     def check(self, deck: DeckView) -> Iterator[Diagnostic]:
         """Look at the moduli and temperatures of every material of particles."""
         for material in deck.particle_materials:
-            yield from self._poisson_ratio(material)
+            if not is_moved_from_outside(deck, material):
+                yield from self._poisson_ratio(material)
             yield from self._melting(material)
             yield from self._cold(material)
 
@@ -49,16 +51,18 @@ class ImpossibleConstants(Rule):
         yield self.warning(message, shear, "are the two exchanged?")
 
     def _melting(self, material: Element) -> Iterator[Diagnostic]:
-        melting = material.get("melt_temp")
-        limit = number(melting.text) if melting is not None else None
-        if limit is None:
-            return
-        for body in material.all("geom_object"):
-            child = body.get("temperature")
-            temperature = number(child.text) if child is not None else None
-            if child is not None and temperature is not None and temperature >= limit:
-                message = f"the body starts at {temperature:g} K, its material melts at {limit:g} K"
-                yield self.warning(message, child)
+        """Bodies that start above the melting temperature of the material, or of its flow stress."""
+        model = material.get("constitutive_model")
+        flow = model.get("flow_model") if model is not None else None
+        for melting in (material.get("melt_temp"), flow.get("T_m") if flow is not None else None):
+            limit = number(melting.text) if melting is not None else None
+            if limit is None:
+                continue
+            for body in material.all("geom_object"):
+                child, temperature = body.get("temperature"), temperature_of(body)
+                if child is not None and temperature is not None and temperature >= limit:
+                    message = f"the body starts at {temperature:g} K, its material melts at {limit:g} K"
+                    yield self.warning(message, child)
 
     def _cold(self, material: Element) -> Iterator[Diagnostic]:
         for body in material.all("geom_object"):

@@ -20,10 +20,10 @@ _SHARE = 0.02
 
 
 class OverlappingBodies(Rule):
-    """Two bodies of different materials overlap at the start.
+    """Two bodies overlap at the start.
 
-    **Why.** Where they overlap, particles of both materials lie in the same place: mass is counted twice and
-    contact drives the bodies apart at once. Uintah and this program fill both.
+    **Why.** Where they overlap, particles of both lie in the same place: mass is counted twice, and if they are of
+    different materials, contact drives them apart at once. Uintah and this program fill both.
 
     **Example.** A box from 0 to 1 of one material and a cylinder through it of another, without a
     ``<difference>`` that makes room.
@@ -35,9 +35,9 @@ class OverlappingBodies(Rule):
     title = "bodies overlap at the start"
 
     def check(self, deck: DeckView) -> Iterator[Diagnostic]:
-        """Compare the shapes of different materials, two by two, by points in their common box."""
+        """Compare the shapes of different bodies, two by two, by points in their common box."""
         bodies = [
-            (index, shape, record)
+            (index, body, shape, record)
             for index, material in enumerate(deck.particle_materials)
             for body in material.all("geom_object")
             for shape in body.children
@@ -45,14 +45,15 @@ class OverlappingBodies(Rule):
         ]
         if len(bodies) > _MOST_BODIES:
             return
-        for number, (first, _, a) in enumerate(bodies):
-            for second, shape, b in bodies[number + 1 :]:
-                share = _overlap(a, b) if first != second else 0.0
+        for number, (first, owner, _, a) in enumerate(bodies):
+            for second, other, shape, b in bodies[number + 1 :]:
+                share = _overlap(a, b) if owner is not other else 0.0
                 if share > _SHARE:
                     yield self._finding_of(shape, first, second, share)
 
     def _finding_of(self, shape: Element, first: int, second: int, share: float) -> Diagnostic:
-        what = f"<{shape.tag}> of material {second} overlaps a body of material {first}"
+        which = f"another body of material {first}" if first == second else f"a body of material {first}"
+        what = f"<{shape.tag}> of material {second} overlaps {which}"
         message = f"{what} by {share:.0%} of the smaller one"
         return self.warning(message, shape, "cut one out of the other with <difference>")
 

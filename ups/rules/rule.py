@@ -57,6 +57,11 @@ class DeckView:
         element = self.find(path)
         return None if element is None else number(element.text)
 
+    def number_of(self, element: Element, tag: str) -> float | None:
+        """The number that a child gives; None where there is none."""
+        child = element.get(tag)
+        return None if child is None else number(child.text)
+
     def switch(self, path: str) -> bool:
         """Whether the text at a path of tags is ``true``."""
         return self.text(path) == "true"
@@ -122,6 +127,16 @@ def _spacing(
     if not cells or any(n < 1 for n in cells):
         return None
     return [(high - low) / n for low, high, n in zip(lower, upper, cells, strict=True)]
+
+
+def periodic_axes(deck: DeckView) -> list[bool]:
+    """Whether the grid repeats in x, y and z."""
+    for path in ("Grid/Level/periodic", "Grid/Level/Box/periodic"):
+        element = deck.find(path)
+        found = numbers(element.text) if element is not None else None
+        if found is not None and len(found) == 3:
+            return [bool(n) for n in found]
+    return [False] * 3
 
 
 class Rule:

@@ -25,7 +25,11 @@ FORMS = {
     "a flag nothing reads": ("UPS304", deck(flags="<UseMomentumForm>false</UseMomentumForm>")),
     "damage constants in the material": (
         "UPS306",
-        deck(materials=METAL.replace("<geom_object>", JOHNSON_COOK + "<geom_object>")),
+        deck(
+            materials=METAL.replace(
+                "<geom_object>", JOHNSON_COOK + '<erosion algorithm="ZeroStress"/><geom_object>'
+            )
+        ),
     ),
     "erosion of the method": ("UPS302", deck(flags='<erosion algorithm="ZeroStress"/>')),
     "a gas constant of the material": ("UPS302", deck(materials=GAS)),

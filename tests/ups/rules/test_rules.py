@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
-from small_decks import CONTACT, LEFT, RIGHT, deck, material
+from small_decks import CONTACT, HYPO, LEFT, RIGHT, deck, material
 
 from ups.lint import lint_text
 
@@ -30,6 +32,19 @@ def with_box(lower: str, upper: str) -> str:
     )
 
 
+GAS = """<ICE><material><EOS type="ideal_gas"/><dynamic_viscosity>0</dynamic_viscosity>
+  <thermal_conductivity>0</thermal_conductivity><specific_heat>716</specific_heat><gamma>1.4</gamma>
+  <geom_object><box label="gas"><min>[0,0,0]</min><max>[0.8,0.5,0.1]</max></box><res>[2,2,2]</res>
+  <velocity>[0,0,0]</velocity><temperature>300</temperature><density>1.2</density><pressure>101325</pressure>
+  </geom_object></material></ICE>"""
+
+
+def gas_deck() -> str:
+    """The small deck with a gas, and conditions on the faces in z only."""
+    text = deck().replace('type="mpm"', 'type="mpmice"')
+    return text.replace("</MPM></MaterialProperties>", f"</MPM>{GAS}</MaterialProperties>")
+
+
 SECOND_LOAD = PRESSURE[PRESSURE.index("<pressure>") : PRESSURE.index("</MPM>")]
 NO_FILE = "<PrescribedDeformationFile>no.txt</PrescribedDeformationFile>"
 OTHERWISE = '</BCType><BCType id="all" var="Dirichlet" label="Velocity"><value>[1,0,0]</value></BCType>'
@@ -37,6 +52,58 @@ FAR = material("[8,8,8]", "[9,9,9]", "[0,0,0]", name="far")
 BRITTLE = LEFT.replace("<geom_object>", '<damage_model type="Brittle"/><geom_object>')
 STEEL = LEFT.replace("32.e6", "160.e9").replace("12.e6", "80.e9").replace(">5.0<", ">450<")
 
+METAL = """<constitutive_model type="elastic_plastic">
+      <bulk_modulus>130.e9</bulk_modulus><shear_modulus>46.e9</shear_modulus>
+      <flow_model type="{}"><A>9.e7</A><B>2.9e8</B><C>0.025</C><n>0.31</n><m>1.09</m><T_m>1356</T_m></flow_model>{}
+    </constitutive_model>"""
+
+
+def metal(parts: str = "", flow: str = "johnson_cook", beside: str = "", erosion: str = "") -> str:
+    """The small deck with one material, a metal of copper's density."""
+    text = LEFT.replace(HYPO, METAL.format(flow, parts) + beside + erosion)
+    text = text.replace("1000.0</density>", "8930.0</density>").replace(">5.0<", ">385.0<")
+    return deck(materials=text)
+
+
+EROSION = '<erosion algorithm="ZeroStress"/>'
+DRUCKER = '<stability_check type="drucker"/>'
+JC_DAMAGE = (
+    '<damage_model type="johnson_cook"><D1>1</D1><D2>1</D2><D3>1</D3><D4>1</D4><D5>1</D5></damage_model>'
+)
+GRUNEISEN = (
+    '<equation_of_state type="mie_gruneisen">'
+    "<C_0>{}</C_0><Gamma_0>2</Gamma_0><S_alpha>1.5</S_alpha></equation_of_state>"
+)
+COPPER_HEAT = '<specific_heat_model type="copper_Cp"/>'
+MTS_SHEAR = (
+    '<shear_modulus_model type="mts_shear"><mu_0>1e10</mu_0><D>1e9</D><T_0>200</T_0></shear_modulus_model>'
+)
+AXISYMMETRIC = deck(flags="<axisymmetric>true</axisymmetric>", materials=LEFT.replace("[2,2,1]", "[2,2,2]"))
+THIRD = material("[0.5,0.4,0]", "[0.7,0.45,0.1]", "[0,0,0]", name="third")
+WITHIN = LEFT[LEFT.index("<geom_object>") : LEFT.index("</material>")].replace(
+    'label="left"', 'label="in it"'
+)
+SAME = LEFT.replace("</material>", WITHIN + "</material>")
+GRAVITY = STEEL.replace("450", "5").replace("1000.0", "7.8")
+NO_SYMMETRY = '<Face side="z-"><BCType id="all" var="symmetry" label="Symmetric"/></Face>'
+TOUCHING = LEFT.replace("[0.1,0.1,0.0]", "[0.0,0.1,0.0]")
+
+
+def timed(**tags: str) -> str:
+    """The small deck, without a limit of steps, with other limits of time."""
+    text = deck(
+        time="".join(
+            f"<{tag}>{value}</{tag}>"
+            for tag, value in tags.items()
+            if tag.startswith("m") or tag == "delt_init"
+        )
+    )
+    for tag, value in tags.items():
+        text = re.sub(f"<{tag}>[^<]*<", f"<{tag}>{value}<", text)
+    return text
+
+
+OFTEN = deck(archiver="<outputInterval>1e-3</outputInterval>", time="")
 UNEVEN = "<spacing>[0.3,0.1,0.1]</spacing>"
 
 CONVERTING = "<create_new_particles>true</create_new_particles>"
@@ -97,6 +164,33 @@ BREAKING = [
     ("UPS405", "warning", deck().replace("multiplier>0.4", "multiplier>4"), "multiplier"),
     ("UPS402", "error", deck().replace('id="all"', 'id="al"', 1), "index"),
     ("UPS209", "error", deck().replace('side="z-"', 'side="w-"'), "side"),
+    ("UPS417", "warning", deck(materials=LEFT + RIGHT + THIRD + CONTACT), "material 2 is in no <contact>"),
+    ("UPS420", "warning", deck().replace(NO_SYMMETRY, ""), "one cell thick in z, without a condition on z-"),
+    ("UPS420", "warning", deck(materials=TOUCHING), "no condition on x-, which a body touches"),
+    ("UPS420", "warning", deck().replace("<Face", '<Face side="x-"/><Face', 1), "this <Face> has no condition"),
+    ("UPS421", "warning", metal(DRUCKER), "<stability_check> does nothing"),
+    ("UPS421", "warning", metal(beside=JC_DAMAGE), "no effect"),
+    ("UPS421", "warning", metal("<initial_mean_porosity>0.1</initial_mean_porosity>"), "knows no porosity"),
+    ("UPS421", "note", metal(MTS_SHEAR), "belongs to the flow stress mts_model"),
+    ("UPS421", "warning", metal(GRUNEISEN.format(394)), "sqrt(K / rho) = 3815"),
+    ("UPS421", "warning", metal(COPPER_HEAT), "compute_specific_heat"),
+    ("UPS421", "warning", metal(COPPER_HEAT).replace("8930", "2700"), "specific heat of copper"),
+    ("UPS421", "note", metal().replace("[20.0,3.0,0.0]", "[1200,0,0]"), "none for shocks"),
+    ("UPS422", "warning", gas_deck(), "the face x- has no condition on Pressure"),
+    ("UPS502", "warning", metal().replace(">300<", ">1400<"), "melts at 1356"),
+    ("UPS503", "warning", on_face("[9000,0,0]"), "the face moves at 9000"),
+    ("UPS504", "warning", deck(materials=GRAVITY).replace("[0,0,0]</gravity>", "[0,-9.81,0]</gravity>"), "mixed"),
+    ("UPS504", "warning", metal().replace("130.e9", "130").replace("46.e9", "46"), "these moduli beside a density"),
+    ("UPS505", "warning", timed(delt_max="1e-9"), "a step of about"),
+    ("UPS505", "warning", timed(maxTime="1e-6"), "before its first stable step"),
+    ("UPS505", "warning", timed(maxTime="1e9"), "steps of"),
+    ("UPS505", "warning", timed(delt_init="1e-12", max_delt_increase="1e-4"), "the step grows"),
+    ("UPS506", "warning", deck().replace("[8,5,1]", "[8000,5000,1000]"), "of memory"),
+    ("UPS506", "warning", OFTEN.replace("[8,5,1]", "[800,500,100]"), "the archive takes"),
+    ("UPS508", "warning", deck(materials=SAME), "another body of material 0"),
+    ("UPS509", "note", deck(materials=LEFT.replace("[2,2,1]", "[1,1,1]")), "one particle in a cell in x, y"),
+    ("UPS509", "warning", deck(materials=LEFT.replace("[2,2,1]", "[2,20,1]")), "a finer grid gains more"),
+    ("UPS509", "warning", AXISYMMETRIC, "one particle in z"),
 ]  # fmt: skip
 
 
@@ -104,14 +198,19 @@ BREAKING = [
 def test_a_rule_finds_what_breaks_it(code, severity, text, part):
     hits = [d for d in lint_text(text).diagnostics if d.code == code]
     assert hits, f"{code} was not found"
-    assert hits[0].severity.value == severity
-    assert part in hits[0].message
-    assert hits[0].location is not None
+    assert [d.severity.value for d in hits if part in d.message] == [severity]
+    assert all(d.location is not None for d in hits)
 
 
 GOOD = [
     deck(),
     deck(materials=FICK, flags=DIFFUSES, saves=("p.x", "p.concentration", "g.concentration", "TotalConc")),
+    metal(DRUCKER, erosion=EROSION),
+    metal(beside=JC_DAMAGE + EROSION),
+    metal(GRUNEISEN.format(3940)),
+    metal(COPPER_HEAT + "<compute_specific_heat>true</compute_specific_heat>"),
+    deck(materials=LEFT + RIGHT + THIRD + CONTACT.replace("[0,1]", "[0,1,2]")),
+    timed(delt_init="1e-5", max_delt_increase="0.1"),
     deck(extra=PRESSURE, flags=LOADS_ON),
     deck().replace("<interpolator>linear", "<interpolator>gimp").replace("<patches>", EXTRA + "<patches>"),
     on_face("[0.0, 0.0, 0.0]"),
