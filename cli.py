@@ -201,7 +201,9 @@ def _say(answer: tuple[str, int]) -> None:
 @click.option("--format", "form", type=click.Choice(["text", "json", "github", "sarif"]), default="text")
 @click.option("--select", multiple=True, metavar="CODE", help="Only findings whose code begins so.")
 @click.option("--ignore", multiple=True, metavar="CODE", help="No findings whose code begins so.")
-@click.option("--jobs", type=click.IntRange(min=1), default=1, help="How many processes share the decks.")
+@click.option(
+    "--jobs", type=click.IntRange(min=1), default=None, help="How many processes share the decks; by default all."
+)
 @click.option("--fix", is_flag=True, help="Do the safe repairs in the files that hold the cause.")
 @click.option("--unsafe", is_flag=True, help="With --fix or --diff: the other repairs, too.")
 @click.option("--diff", is_flag=True, help="Show the repairs, and do none.")

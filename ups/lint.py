@@ -18,6 +18,9 @@ from ups.element import Element
 from ups.suppression import without_suppressed
 
 DECK_SUFFIX = ".ups"
+WORTH_SHARING = 16
+"""From how many decks on the work is shared between processors unless the caller says how many."""
+
 MAX_ROUNDS = 10
 """How often fixes are done in a row; each may uncover others."""
 
@@ -86,7 +89,7 @@ def lint_files(
     *,
     select: Iterable[str] = (),
     ignore: Iterable[str] = (),
-    jobs: int = 1,
+    jobs: int | None = 1,
 ) -> LintResult:
     """Check decks, and all decks of folders.
 
@@ -95,7 +98,7 @@ def lint_files(
     paths : files and folders.
     select : prefixes of codes; where there are any, only findings with one of them are kept.
     ignore : prefixes of codes whose findings are left out.
-    jobs : how many processes share the decks.
+    jobs : how many processes share the decks; None: as many as there are processors, where that pays.
     """
     decks = list(find_decks(paths))
     result = LintResult(decks=len(decks))
@@ -124,8 +127,10 @@ def _add(
     result.sources.update(sources)
 
 
-def _lint_all(decks: list[Path], jobs: int) -> Iterator[tuple[list[Diagnostic], dict[str, str]]]:
+def _lint_all(decks: list[Path], jobs: int | None) -> Iterator[tuple[list[Diagnostic], dict[str, str]]]:
     """The findings and texts of each deck, in order."""
+    if jobs is None:
+        jobs = (os.cpu_count() or 1) if len(decks) >= WORTH_SHARING else 1
     if jobs <= 1 or len(decks) <= 1:
         yield from map(_lint_one, decks)
         return
@@ -161,7 +166,7 @@ def fix_files(
     unsafe: bool = False,
     select: Iterable[str] = (),
     ignore: Iterable[str] = (),
-    jobs: int = 1,
+    jobs: int | None = 1,
 ) -> tuple[LintResult, int]:
     """Do the fixes in the files until none is left; return what remains, and how many were done.
 
@@ -202,7 +207,7 @@ class LintOptions:
     form: str = "text"
     select: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
-    jobs: int = 1
+    jobs: int | None = 1
     fix: bool = False
     unsafe: bool = False
     diff: bool = False

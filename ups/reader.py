@@ -324,6 +324,8 @@ class Reader(ValueReader):
         if child is None or not child.texts:
             self.error("UPS101", f"<{element.tag}> needs <{family.key}>: {family.meaning}", child or element)
             return "", None
+        for attribute in child.attributes.values():
+            self._unknown_attribute(child, attribute, ())
         return child.text, child.texts[0]
 
     def _unknown_model(self, family: Family, name: str, at: Any) -> None:

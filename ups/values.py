@@ -88,8 +88,15 @@ class ValueReader:
         return FAILED
 
     def _number(self, text: str, at: Place, what: str) -> Any:
-        if NUMBER.match(text) or text.lower() in _SPECIAL:
-            return float(text)
+        if NUMBER.match(text):
+            if math.isfinite(value := float(text)):
+                return value
+            self.error("UPS208", f"{what} is {text}; no number in a deck is that large", at)
+            return FAILED
+        if text.lower() in _SPECIAL:
+            advice = "leave it out, or write a number that is large enough"
+            self.error("UPS203", f"{what} is {text!r}; Uintah reads digits only", at, advice)
+            return FAILED
         repaired = _repaired_number(text)
         suggestion = f"did you mean {repaired}?" if repaired else None
         fix = Fix((_replaced(at, repaired),), safe=False) if repaired and is_whole(at, text) else None

@@ -24,6 +24,18 @@ LABELS = [
     "cc_temperature",
 ]
 VALUED = ("Dirichlet", "Neumann")
+NUMBERED = (
+    "computeFromDensity",
+    "LODI",
+    "Sine",
+    "slip",
+    "creep",
+    "powerLawProfile",
+    "logLawProfile",
+    "MMS_1",
+)
+"""Kinds whose value, where one is given, is a number too, though not what the face gets."""
+
 WITHOUT_VALUE = ("Symmetric",)
 KINDS = [
     "Neumann",
@@ -97,18 +109,33 @@ class BoundaryValue(Rule):
 
     def _check_value(self, condition: Element) -> Iterator[Diagnostic]:
         kind, label = condition.attributes.get("var"), condition.attributes.get("label")
-        value = condition.get("value")
-        if kind is None or label is None or kind.value.strip() not in VALUED or label.value in WITHOUT_VALUE:
+        if kind is None or label is None or label.value in WITHOUT_VALUE:
             return
+        value = condition.get("value")
+        if kind.value.strip() in VALUED:
+            yield from self._check_prescribed(condition, label.value.strip(), value)
+        elif (
+            kind.value.strip() in NUMBERED
+            and value is not None
+            and value.texts
+            and numbers(value.text) is None
+        ):
+            message = f"the <value> of {label.value} is {value.text!r}; it must be a number"
+            yield self.error(message, value.texts[0], "write a number")
+
+    def _check_prescribed(
+        self, condition: Element, label: str, value: Element | None
+    ) -> Iterator[Diagnostic]:
+        """The value that a face gets: a vector in brackets or a number."""
         if value is None or not value.texts:
-            yield self.error(f"the condition on {label.value} needs a <value>", value or condition)
+            yield self.error(f"the condition on {label} needs a <value>", value or condition)
             return
         found = numbers(value.text)
-        width = 3 if label.value == "Velocity" else 1
+        width = 3 if label == "Velocity" else 1
         form = "[vx, vy, vz]" if width == 3 else "one number"
-        if found is None or len(found) != width:
-            message = f"the <value> of {label.value} is {value.text!r}; it must be {form}"
-            report = (
-                self.error if found is None else self.warning
-            )  # Uintah passes over a wrong number of them
-            yield report(message, value.texts[0], f"write {form}")
+        bare = width == 3 and not value.text.startswith("[")
+        message = f"the <value> of {label} is {value.text!r}; it must be {form}"
+        if found is None or (bare and len(found) == width):
+            yield self.error(message, value.texts[0], f"write {form}")
+        elif len(found) != width:  # Uintah passes over a wrong number of them
+            yield self.warning(message, value.texts[0], f"write {form}")

@@ -103,6 +103,7 @@ def timed(**tags: str) -> str:
     return text
 
 
+COMPUTED = on_face("none").replace('"Dirichlet" label="Velocity"', '"computeFromDensity" label="SpecificVol"')
 OFTEN = deck(archiver="<outputInterval>1e-3</outputInterval>", time="")
 UNEVEN = "<spacing>[0.3,0.1,0.1]</spacing>"
 
@@ -139,7 +140,10 @@ BREAKING = [
     ("UPS409", "error", deck().replace("<patches>", EXTRA + "<patches>"), "no extra cells"),
     ("UPS413", "warning", on_face("1.0"), "[vx, vy, vz]"),
     ("UPS413", "error", on_face("fast"), "[vx, vy, vz]"),
+    ("UPS413", "error", on_face("0, 0, 0"), "[vx, vy, vz]"),
+    ("UPS423", "warning", deck(saves=("p.x", "p.mass", "p.x")), "p.x is saved on line"),
     ("UPS413", "error", on_face("[0,0,0]").replace("Dirichlet", "Dirichlt"), "Dirichlt"),
+    ("UPS413", "error", COMPUTED, "number"),
     ("UPS414", "error", deck(materials=BRITTLE), "erosion"),
     ("UPS415", "warning", deck(extra=PRESSURE), "no effect"),
     ("UPS416", "warning", on_face("[0,0,0]").replace("</BCType>", OTHERWISE, 1), "otherwise"),
