@@ -310,6 +310,24 @@ def did_you_mean(word: str, candidates: Iterable[str]) -> str | None:
     return found
 
 
+def is_certain(word: str, meant: str, candidates: Iterable[str]) -> bool:
+    """Whether a word can be nothing but one of the candidates.
+
+    It differs in capitals only; or by a slip, one letter that was dropped or doubled or two that were swapped; or,
+    if it is long, by two edits; and all other candidates are twice as far. Words of less than four letters say
+    too little.
+    """
+    lowered, right = word.lower(), meant.lower()
+    if lowered == right:
+        return True
+    edits = 1 if _is_slip(lowered, right) else 2
+    shortest = 4 if edits == 1 else 8
+    if len(word) < shortest or edit_distance(lowered, right, edits) > edits:
+        return False
+    others = (c.lower() for c in candidates if c != meant)
+    return all(edit_distance(lowered, other, 2 * edits - 1) > 2 * edits - 1 for other in others)
+
+
 def suggestion_for(word: str, candidates: Iterable[str], form: str = "{}") -> str | None:
     """Return ``did you mean ...?`` with the nearest candidate in `form` (such as ``<{}>``), or None."""
     nearest = did_you_mean(word, candidates)

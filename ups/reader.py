@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from solver.declare import FAMILIES, Family, FieldInfo, TagGroup, fields, groups, without_optional
-from ups.diagnostics import Diagnostics, Fix, Located, did_you_mean, suggestion_for
+from ups.diagnostics import Diagnostics, Fix, Located, did_you_mean, is_certain, suggestion_for
 from ups.element import Attribute, Element, Text
 from ups.grammar import extension, known_model, known_names, parents_of
 from ups.values import FAILED, ValueReader
@@ -333,7 +333,7 @@ class Reader(ValueReader):
         nearest = did_you_mean(name, names)
         fix = None
         if nearest and isinstance(at, Attribute | Text):
-            fix = Fix((at.replaced(nearest),), safe=nearest.lower() == name.lower())
+            fix = Fix((at.replaced(nearest),), safe=is_certain(name, nearest, names))
         self.error(
             "UPS209",
             f"{family.meaning}: unknown {name!r}; known are {', '.join(sorted(names))}",
@@ -362,7 +362,8 @@ class Reader(ValueReader):
         except ValueError as problem:
             fix = None
             if label is not None and element.children:
-                fix = Fix((label.replaced(f"{label.value}, line {label.location.line}"),), safe=False)
+                name = f"{label.value}, line {label.location.line}"
+                fix = Fix((label.replaced(name),), safe=not _is_referred_to(element, label.value))
             self.error(
                 "UPS410" if not element.children else "UPS407", str(problem), label or element, None, fix
             )
@@ -478,6 +479,17 @@ def _where_it_belongs(child: Element) -> str | None:
     """Where a tag that stands in the wrong place belongs, or None when no section has it."""
     parents = parents_of(child.tag)
     return f"it belongs in {' or '.join(f'<{p}>' for p in parents[:4])}" if parents else None
+
+
+def _is_referred_to(piece: Element, label: str) -> bool:
+    """Whether a deck uses the name of a piece anywhere in place of its shape."""
+    *_, root = piece.ancestors()
+    return any(
+        element.tag == piece.tag
+        and not element.children
+        and any(a.value == label for n, a in element.attributes.items() if n in ("label", "name"))
+        for element in root.iter()
+    )
 
 
 def _file_element(record: type, element: Element) -> Element:

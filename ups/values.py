@@ -7,7 +7,7 @@ import re
 from typing import Any, get_args, get_origin
 
 from solver.declare import FieldInfo, Parameter
-from ups.diagnostics import Diagnostic, Diagnostics, Fix, Severity, did_you_mean, suggestion_for
+from ups.diagnostics import Diagnostic, Diagnostics, Fix, Severity, did_you_mean, is_certain, suggestion_for
 from ups.element import Attribute, Element, Text
 
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\Z")
@@ -166,7 +166,7 @@ class ValueReader:
         nearest = did_you_mean(word, parameter.choices)
         fix = None
         if nearest and is_whole(at, word):
-            fix = Fix((_replaced(at, nearest),), safe=nearest.lower() == word.lower())
+            fix = Fix((_replaced(at, nearest),), safe=is_certain(word, nearest, parameter.choices))
         suggestion = suggestion_for(word, parameter.choices)
         self.error("UPS209", f"{what} is {word!r}; it must be one of {legal}", at, suggestion, fix)
 

@@ -19,6 +19,7 @@ from ups.diagnostics import (
     apply_fixes,
     did_you_mean,
     edit_distance,
+    is_certain,
     register_code,
     suggestion_for,
 )
@@ -382,3 +383,18 @@ def test_sarif_has_the_parts_that_its_schema_requires(unknown_tag):
 @pytest.mark.parametrize("name", ["text", "json", "github", "sarif"])
 def test_every_format_takes_no_diagnostics(name):
     assert isinstance(RENDERERS[name]([], {}), str)
+
+
+@pytest.mark.parametrize(
+    ("word", "meant", "candidates", "certain"),
+    [
+        ("cpid", "cpdi", ["linear", "gimp", "cpdi", "fast_cpdi", "cpti"], True),
+        ("GIMP", "gimp", ["gimp", "cpdi"], True),
+        ("MohrColoumb", "MohrCoulomb", ["MohrCoulomb", "MaximumPrincipalStress"], True),
+        ("cpxi", "cpdi", ["cpdi", "cpti"], False),
+        ("gmp", "gimp", ["gimp"], False),
+        ("cpdii", "cpdi", ["cpdi", "cpdi2"], False),
+    ],
+)
+def test_what_a_word_can_be_nothing_but(word, meant, candidates, certain):
+    assert is_certain(word, meant, candidates) is certain

@@ -130,8 +130,8 @@ class BoundaryValue(Rule):
         if value is None or not value.texts:
             yield self.error(f"the condition on {label} needs a <value>", value or condition)
             return
-        found = numbers(value.text)
         width = 3 if label == "Velocity" else 1
+        found = None if value.text.endswith(",") else numbers(value.text)
         form = "[vx, vy, vz]" if width == 3 else "one number"
         bare = width == 3 and not value.text.startswith("[")
         message = f"the <value> of {label} is {value.text!r}; it must be {form}"

@@ -22,7 +22,8 @@ class ExtraCells(Rule):
 
     **Example.** ``<interpolator>gimp</interpolator>`` with ``<extraCells>[0, 0, 0]</extraCells>``.
 
-    **Repair.** Set ``<extraCells>`` to 1 where the grid is not periodic, or to [0, 0, 0] for ``linear``.
+    **Repair.** Set ``<extraCells>`` to 1 where the grid is not periodic, or to [0, 0, 0] for ``linear``; nothing else
+    goes with the interpolator, so that ``--fix`` does it.
     """
 
     code = "UPS409"
@@ -52,7 +53,7 @@ class ExtraCells(Rule):
 
     def _finding_at(self, box: Element, needed: list[int], message: str) -> Diagnostic:
         given = box.get("extraCells")
-        fix = Fix((given.texts[0].replaced(str(needed)),), safe=False) if given and given.texts else None
+        fix = Fix((given.texts[0].replaced(str(needed)),)) if given and given.texts else None
         return self.error(message, given or box, f"set <extraCells>{needed}</extraCells>", fix)
 
 

@@ -214,7 +214,7 @@ def test_an_editor_without_snippets_gets_plain_text(tmp_path):
 def test_repairs_are_offered_and_do_what_they_say(tmp_path):
     path = tmp_path / "deck.ups"
     line = "\n    <UseMomentumForm>true</UseMomentumForm>"
-    wrong = deck(flags=line).replace("<interpolator>linear", "<interpolator>linaer")
+    wrong = deck(flags=line).replace("<interpolator>linear", "<interpolator>linxar")
 
     async def actions(editor: Editor, part: str, *only: str) -> dict[str, types.CodeAction]:
         at = types.Range(place(wrong, part), place(wrong, part))
@@ -224,7 +224,7 @@ def test_repairs_are_offered_and_do_what_they_say(tmp_path):
 
     async def session(editor: Editor) -> None:
         editor.open(path, wrong)
-        found = await actions(editor, "linaer", "quickfix")
+        found = await actions(editor, "linxar", "quickfix")
         (repair,) = found.values()
         assert repair.title == "Write linear"
         assert not repair.is_preferred
