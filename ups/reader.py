@@ -118,7 +118,7 @@ class Reader(ValueReader):
             self.error("UPS408", str(problem), _file_element(record, element))
             return None
         except (ValueError, OSError) as problem:
-            self.error("UPS502", str(problem), element)
+            self.error("UPS502", str(problem), _subject(str(problem), element))
             return None
         for name, message in faults:
             tag = next((i.tag for i in fields(record) if i.name == name), name)
@@ -321,6 +321,8 @@ class Reader(ValueReader):
                 return "", None
             return attribute.value.strip(), attribute
         child = element.get(family.key)
+        if child is None:  # one that is misspelt is reported with the other children
+            child = next((c for c in element.children if did_you_mean(c.tag, (family.key,))), None)
         if child is None or not child.texts:
             self.error("UPS101", f"<{element.tag}> needs <{family.key}>: {family.meaning}", child or element)
             return "", None
@@ -479,6 +481,12 @@ def _where_it_belongs(child: Element) -> str | None:
     """Where a tag that stands in the wrong place belongs, or None when no section has it."""
     parents = parents_of(child.tag)
     return f"it belongs in {' or '.join(f'<{p}>' for p in parents[:4])}" if parents else None
+
+
+def _subject(message: str, element: Element) -> Element:
+    """The child that a message begins with, or the element."""
+    word = message.partition(" ")[0].strip("<>")
+    return element.get(word) or element
 
 
 def _is_referred_to(piece: Element, label: str) -> bool:

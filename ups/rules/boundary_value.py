@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ups.diagnostics import Diagnostic, did_you_mean, register_code
 from ups.element import Element
 from ups.rules.rule import DeckView, Rule
-from ups.values import numbers
+from ups.values import number, numbers
 
 LABELS = [
     "Velocity",
