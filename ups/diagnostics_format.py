@@ -58,7 +58,7 @@ def render_sarif(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str] |
     codes = sorted({item.code for item in items})
     driver = {
         "name": "ups",
-        "rules": [{"id": code, "shortDescription": {"text": CODES[code]}} for code in codes],
+        "rules": [_sarif_rule(code) for code in codes],
     }
     run = {
         "tool": {"driver": driver},
@@ -176,6 +176,17 @@ def _github_line(diagnostic: Diagnostic) -> str:
         f"{diagnostic.message}; {diagnostic.suggestion}" if diagnostic.suggestion else diagnostic.message
     )
     return f"::{command} {','.join(properties)}::{escape(message)}"
+
+
+def _sarif_rule(code: str) -> dict[str, Any]:
+    """A code with its page, which code-scanning services show beside each result."""
+    from ups.explain import explain_code
+
+    page = explain_code(code).partition("\n\n")[2]
+    rule: dict[str, Any] = {"id": code, "shortDescription": {"text": CODES[code]}}
+    if page:
+        rule["help"] = {"text": page, "markdown": page.replace("``", "`")}
+    return rule
 
 
 def _sarif_result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:

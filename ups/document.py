@@ -16,7 +16,7 @@ import materialdata
 from ups.diagnostics import Diagnostics, Fix, Located, did_you_mean, suggestion_for
 from ups.element import Attribute, Comment, Element, Text, to_xml
 from ups.source import SourceFile, load_source
-from ups.xml_parser import ParsedFile, parse_xml
+from ups.xml_parser import MAX_ELEMENTS, ParsedFile, parse_xml
 
 __all__ = [
     "Attribute",
@@ -35,7 +35,7 @@ INCLUDE_ROOTS = ("Uintah_Include", "Uintah_specification")
 MAX_INCLUDES = 5000
 """How many includes a deck may resolve, all levels together."""
 
-MAX_INCLUDED_CHARACTERS = 256 * 1024 * 1024
+MAX_INCLUDED_CHARACTERS = 64 * 1024 * 1024
 """How many characters all includes of a deck may bring together; a file counts each time."""
 
 _PROGRAM_ROOT = Path(__file__).resolve().parent.parent
@@ -147,12 +147,14 @@ class _DeckReader:
         self.complete = True
         self.included_characters = 0
         self.resolved = 0
+        self.room = MAX_ELEMENTS
         self.exhausted = False
 
     def read(self, name: str, text: str | None, roots: tuple[str, ...]) -> Document:
         source = SourceFile(name, text) if text is not None else self._load(name)
         self.files[name] = source
         parsed = parse_xml(source, self.diagnostics) if source else ParsedFile(complete=False)
+        self.room -= parsed.elements
         self.complete = self.complete and parsed.complete
         root = parsed.root
         if root is not None:
@@ -206,7 +208,8 @@ class _DeckReader:
         """Return what an include stands for; nothing, and a diagnostic, when it cannot be resolved."""
         source = self._source_of(include, chain)
         depth = sum(1 for _ in include.ancestors())
-        parsed = parse_xml(source, self.diagnostics, depth) if source else None
+        parsed = parse_xml(source, self.diagnostics, depth, self.room) if source else None
+        self.room -= parsed.elements if parsed is not None else 0
         if parsed is None or parsed.root is None:
             self.complete = False
             return []
@@ -251,6 +254,11 @@ class _DeckReader:
         if name not in self.files:
             self.files[name] = self._load(name)
         source = self.files[name]
+        if source is not None and not source.text.lstrip().startswith("<"):
+            # no line of such a file is shown: a deck from a stranger may name any file of its reader
+            self.files[name] = None
+            self.diagnostics.error("UPS002", f"{href.value.strip()} is not an XML file", href)
+            return None
         return source if source and self._within_limits(source, href) else None
 
     def _say_renamed(self, href: Attribute, today: str) -> None:

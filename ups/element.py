@@ -159,12 +159,12 @@ class Element:
 
     def find_all(self, path: str) -> Iterator[Element]:
         """Yield every descendant at a path of tags, in document order."""
-        tag, _, rest = path.partition("/")
-        for child in self.all(tag):
-            if rest:
-                yield from child.find_all(rest)
-            else:
-                yield child
+        found = [self]
+        for tag in path.split("/"):
+            found = [child for element in found for child in element.children if child.tag == tag]
+            if not found:
+                return
+        yield from found
 
     def iter(self) -> Iterator[Element]:
         """Yield the element itself and all its descendants in document order."""

@@ -11,7 +11,8 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from ups.diagnostics import Diagnostic, Location, Severity, register_code
+from ups.diagnostics import Diagnostic, Edit, Fix, Location, Severity, register_code
+from ups.source import SourceFile
 
 UNUSED = register_code("UPS014", "suppression that suppresses nothing")
 
@@ -25,6 +26,7 @@ class Suppression:
     location: Location
     line: int
     codes: tuple[str, ...]
+    removal: Fix
     used: bool = False
 
     def covers(self, diagnostic: Diagnostic) -> bool:
@@ -43,29 +45,42 @@ def suppressions(file: str, text: str) -> list[Suppression]:
     if "ups:" not in text:
         return []
     found = []
+    source = SourceFile(file, text)
     for match in _COMMENT.finditer(text):
-        start = text.rfind("\n", 0, match.start()) + 1
-        line = text.count("\n", 0, match.start()) + 1
+        at = source.location(match.start(), match.end())
+        start, line = match.start() - at.column + 1, at.line
         alone = not text[start : match.start()].strip()
         codes = tuple(code for code in re.split(r"[,\s]+", match.group(2)) if code)
         whole_file = match.group(1) == "ignore-file"
-        at = Location(file, line, match.start() - start + 1, len(match.group()))
-        found.append(Suppression(at, 0 if whole_file else line + alone, codes))
+        removal = Fix((Edit(file, match.start(), match.end(), ""),))
+        found.append(Suppression(at, 0 if whole_file else line + alone, codes, removal))
     return [s for s in found if s.codes]
 
 
 def without_suppressed(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> list[Diagnostic]:
     """The findings that no comment keeps quiet, and a warning for each comment that keeps none quiet."""
     comments = [s for file, text in sources.items() for s in suppressions(file, text)]
+    if not comments:
+        return list(diagnostics)
+    by_line: dict[tuple[str, int], list[Suppression]] = {}
+    for comment in comments:
+        by_line.setdefault((comment.location.file, comment.line), []).append(comment)
     kept = []
     for diagnostic in diagnostics:
-        covering = [s for s in comments if s.covers(diagnostic)]
+        at = diagnostic.location
+        near = (
+            [*by_line.get((at.file, at.line), ()), *by_line.get((at.file, 0), ())] if at is not None else []
+        )
+        covering = [comment for comment in near if comment.covers(diagnostic)]
         for comment in covering:
             comment.used = True
         if not covering:
             kept.append(diagnostic)
-    for comment in comments:
-        if not comment.used:
-            message = f"nothing to suppress here: {', '.join(comment.codes)}"
-            kept.append(Diagnostic(UNUSED, Severity.WARNING, message, comment.location, "remove the comment"))
-    return kept
+    return kept + [_unused(comment) for comment in comments if not comment.used]
+
+
+def _unused(comment: Suppression) -> Diagnostic:
+    message = f"nothing to suppress here: {', '.join(comment.codes)}"
+    return Diagnostic(
+        UNUSED, Severity.WARNING, message, comment.location, "remove the comment", comment.removal
+    )

@@ -19,6 +19,9 @@ from ups.source import SourceFile
 MAX_DEPTH = 200
 """How deep elements may be nested; decks need about ten."""
 
+MAX_ELEMENTS = 250_000
+"""How many elements a deck may have, its includes included; the largest in use have a tenth of it."""
+
 _CHUNK = 1 << 20  # bytes given to expat at a time, so that it stops soon after the depth limit
 _MAX_RECOVERIES = 50
 _ATTRIBUTE = re.compile(r"""\s*([^\s=<>/"']+)\s*=\s*("[^"]*"|'[^']*')""")
@@ -47,18 +50,25 @@ _MISPLACED_DECLARATION = 17
 class ParsedFile:
     """What a file holds: the root (None when there is none) and the comments before and after it.
 
-    `complete` is False when reading had to stop early, so that the end of the tree is missing.
+    `complete` is False when reading had to stop early, so that the end of the tree is missing. `elements` is how
+    many there are.
     """
 
     root: Element | None = None
     complete: bool = True
+    elements: int = 0
     before: list[Comment] = field(default_factory=list)
     after: list[Comment] = field(default_factory=list)
 
 
-def parse_xml(source: SourceFile, diagnostics: Diagnostics, depth: int = 0) -> ParsedFile:
-    """Parse a file; `depth` is how deep the place is where its content will be inserted."""
-    reader = _TreeReader(source, diagnostics, depth)
+def parse_xml(
+    source: SourceFile, diagnostics: Diagnostics, depth: int = 0, room: int = MAX_ELEMENTS
+) -> ParsedFile:
+    """Parse a file.
+
+    `depth` is how deep the place is where its content will be inserted, `room` how many elements it may have.
+    """
+    reader = _TreeReader(source, diagnostics, depth, room)
     reader.read()
     return reader.result
 
@@ -70,10 +80,12 @@ class _StopReadingError(Exception):
 class _TreeReader:
     """Expat's events made into a tree."""
 
-    def __init__(self, source: SourceFile, diagnostics: Diagnostics, depth: int) -> None:
+    def __init__(self, source: SourceFile, diagnostics: Diagnostics, depth: int, room: int) -> None:
         self.source = source
+        self.text = source.text  # as expat sees it: without the characters that XML forbids
         self.diagnostics = diagnostics
         self.depth = depth
+        self.room = room
         self.result = ParsedFile()
         self.open: list[Element] = []
         self.text_start = -1  # where the current run of text has its first non-blank character
@@ -91,6 +103,7 @@ class _TreeReader:
         if text is None:
             self.result.complete = False
             return
+        self.text = text
         self.data = text.encode("utf-8")
         self.ascii = len(self.data) == len(text)
         begin: int | None = 0
@@ -132,7 +145,7 @@ class _TreeReader:
     def _recover(self, code: int, byte: int) -> int | None:
         """Report a syntax error at a byte; return the byte to go on from, or None to stop."""
         here = self._character_at(max(byte, 0))
-        text = self.source.text
+        text = self.text
         resume: int | None = None
         if code == _TAG_MISMATCH:
             resume = self._mismatch(here - 2)
@@ -159,7 +172,7 @@ class _TreeReader:
 
     def _without_forbidden_characters(self) -> str | None:
         """Blank the characters that XML forbids; return None when the file is no text at all."""
-        text = self.source.text
+        text = self.text
         found = _NOT_XML.search(text)
         if found is None:
             return text
@@ -188,7 +201,7 @@ class _TreeReader:
 
     def _byte_at(self, character: int) -> int:
         """Return the byte in the data of an index in the text."""
-        return character if self.ascii else len(self.source.text[:character].encode("utf-8", "replace"))
+        return character if self.ascii else len(self.text[:character].encode("utf-8", "replace"))
 
     def _here(self) -> int:
         return self._character_at(self.parser.CurrentByteIndex - self.shift)
@@ -201,7 +214,7 @@ class _TreeReader:
         parent = self.open[-1] if self.open else None
         element = Element(tag, self.source, start, parent)
         position = self._read_attributes(element, attributes)
-        end = _TAG_END.match(self.source.text, position)
+        end = _TAG_END.match(self.text, position)
         element.open_end = element.close_start = element.end = end.end() if end else position
         if parent is None:
             self.result.root = element
@@ -209,13 +222,17 @@ class _TreeReader:
             parent.children.append(element)
             parent.content.append(element)
         self.open.append(element)
+        self.result.elements += 1
+        if self.result.elements > self.room:
+            self.diagnostics.error("UPS007", f"a deck has at most {MAX_ELEMENTS} elements", element)
+            raise _StopReadingError
         if len(self.open) + self.depth > MAX_DEPTH:
             self.diagnostics.error("UPS007", f"elements are nested more than {MAX_DEPTH} deep", element)
             raise _StopReadingError
 
     def _read_attributes(self, element: Element, attributes: list[str]) -> int:
         """Set the attributes with their places; return where the last one ends."""
-        text, source = self.source.text, self.source
+        text, source = self.text, self.source
         position = element.start + 1 + len(element.tag)
         for name, value in zip(attributes[::2], attributes[1::2], strict=True):
             found = _ATTRIBUTE.match(text, position)
@@ -228,7 +245,7 @@ class _TreeReader:
 
     def _end_element(self, _tag: str) -> None:
         element = self.open[-1]
-        text = self.source.text
+        text = self.text
         if text.startswith("/>", element.open_end - 2):
             self.open.pop()
             return
@@ -256,7 +273,7 @@ class _TreeReader:
         content = self.open[-1].content
         previous = content[-1] if content else None
         same_line = isinstance(previous, Element) and not re.search(
-            r"[\r\n]", self.source.text[previous.end : start]
+            r"[\r\n]", self.text[previous.end : start]
         )
         content.append(Comment(value, same_line))
 
@@ -265,7 +282,7 @@ class _TreeReader:
 
     def _doctype(self, _name: str, _system: str | None, _public: str | None, has_content: int) -> None:
         if has_content:
-            start = self.source.text.rfind("<!DOCTYPE", 0, self._here())
+            start = self.text.rfind("<!DOCTYPE", 0, self._here())
             at = self.source.location(start, start + len("<!DOCTYPE"))
             self.diagnostics.error(
                 "UPS006",
@@ -280,7 +297,7 @@ class _TreeReader:
         if self.text_start < 0:
             return
         value = "".join(self.text_parts).strip()
-        stop = len(self.source.text[self.text_start : end].rstrip()) + self.text_start
+        stop = len(self.text[self.text_start : end].rstrip()) + self.text_start
         self.open[-1].texts.append(Text(value, self.source, self.text_start, stop))
         self.text_start = -1
         self.text_parts.clear()
@@ -290,7 +307,7 @@ class _TreeReader:
     def _mismatch(self, start: int) -> int:
         """Report a closing tag, at `start`, that does not fit what is open; return where to go on."""
         self._end_text(start)
-        text = self.source.text
+        text = self.text
         found = _NAME.match(text, start + 2)
         name = found.group() if found else ""
         innermost = self.open[-1]
@@ -355,7 +372,7 @@ class _TreeReader:
 
     def _close_all(self) -> None:
         """At the end of the file, report the elements that are still open, innermost first."""
-        end = len(self.source.text)
+        end = len(self.text)
         if not self.result.complete:
             for element in self.open:
                 element.close_start = element.end = end
@@ -369,7 +386,7 @@ class _TreeReader:
 
     def _bare_at(self, here: int) -> int:
         """Find where a ``&`` or ``<`` that stands for itself in a text caused the error at `here`, or -1."""
-        text = self.source.text
+        text = self.text
         ampersand = text.rfind("&", 0, here + 1)
         if ampersand >= 0 and _REFERENCE_BEGUN.fullmatch(text, ampersand, max(here, ampersand + 1)):
             start = ampersand
@@ -380,8 +397,8 @@ class _TreeReader:
         return -1 if _within_tag(text, start) else start
 
     def _report_bare(self, position: int) -> None:
-        character = self.source.text[position]
-        if entity := _ENTITY.match(self.source.text, position):
+        character = self.text[position]
+        if entity := _ENTITY.match(self.text, position):
             at = self.source.location(position, entity.end())
             message = f"entity {entity.group()} is not defined"
             self.diagnostics.error("UPS002", message, at, "write the character itself")
@@ -397,7 +414,7 @@ class _TreeReader:
         )
 
     def _report_syntax(self, code: int, here: int) -> None:
-        message, start, end, suggestion = _explain(code, self.source.text, here)
+        message, start, end, suggestion = _explain(code, self.text, here)
         self.diagnostics.error("UPS002", message, self.source.location(start, end), suggestion)
 
     def _line(self, position: int) -> int:

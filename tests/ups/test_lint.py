@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from small_decks import HYPO, LEFT, deck
 
 from ups.lint import LintOptions, find_decks, fix_files, lint_command, lint_deck, lint_files, lint_text
+from ups.suppression import without_suppressed
 
 ROOT = Path(__file__).resolve().parents[2]
 CORPUS = ROOT.parent / "shared" / "corpus"
@@ -200,7 +201,15 @@ def test_any_text_at_all_gives_diagnostics_and_no_exception(text):
         b"\xff\xfe" + deck().encode("utf-16-le"),
         deck().encode("utf-16"),
         b"\x00" * 100,
-        b"<a>" * 200000,
+        b"<a>" * 3_500_000,
+        b"<Uintah_specification>" + b"<Time/>" * 1_000_000 + b"</Uintah_specification>",
+        b"<Uintah_specification>" + b"<!-- ups: ignore UPS1 -->\n" * 20_000 + b"</Uintah_specification>",
+        deck()
+        .replace('encoding="UTF-8"', 'encoding="ISO-8859-1"')
+        .replace("two blocks", "Gr\xfcn")
+        .encode("latin-1"),
+        deck().replace("<Meta>", "<Meta\x01 a='1'\x02 b='2'>").encode(),
+        b'<Uintah_specification><include href="hostile.ups"/></Uintah_specification>',
         b'<!DOCTYPE a [<!ENTITY b "c">]><Uintah_specification>&b;</Uintah_specification>',
         b"",
         b'<Uintah_specification><include href="../../../../../../etc/passwd"/></Uintah_specification>',
@@ -209,9 +218,22 @@ def test_any_text_at_all_gives_diagnostics_and_no_exception(text):
 def test_hostile_files_end_soon_and_without_exception(tmp_path, content):
     path = tmp_path / "hostile.ups"
     path.write_bytes(content)
-    start = time.perf_counter()
-    lint_deck(path)
-    assert time.perf_counter() - start < 5.0
+    start = time.process_time()
+    checked = lint_deck(path)
+    without_suppressed(checked.diagnostics, checked.sources)
+    assert time.process_time() - start < 5.0
+
+
+def test_no_line_of_a_file_that_is_no_xml_is_shown(tmp_path):
+    """A deck from a stranger may include any file of the machine that checks it."""
+    (tmp_path / "secret").write_text("password: 1234\n")
+    (tmp_path / "in").mkdir()
+    path = tmp_path / "in" / "deck.ups"
+    path.write_text('<Uintah_specification><include href="../secret"/></Uintah_specification>')
+    text, status = lint_command([path], LintOptions())
+    assert status == 1
+    assert "../secret is not an XML file" in text
+    assert "1234" not in text
 
 
 def test_linting_loads_nothing_heavy(tmp_path):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ups.diagnostics import Diagnostic, did_you_mean, register_code
+from ups.diagnostics import Diagnostic, Fix, did_you_mean, is_certain, register_code
 from ups.element import Element
 from ups.rules.rule import DeckView, Rule
 from ups.values import number, numbers
@@ -97,14 +97,20 @@ class BoundaryValue(Rule):
         if kind is not None and kind.value.strip() not in KINDS:
             nearest = did_you_mean(kind.value.strip(), KINDS)
             suggestion = f"did you mean {nearest}?" if nearest else "use Dirichlet, Neumann or symmetry"
-            yield self.error(f"unknown kind of condition {kind.value.strip()!r}", kind, suggestion)
+            fix = (
+                Fix((kind.replaced(nearest),), is_certain(kind.value.strip(), nearest, KINDS))
+                if nearest
+                else None
+            )
+            yield self.error(f"unknown kind of condition {kind.value.strip()!r}", kind, suggestion, fix)
         label = condition.attributes.get("label")
         name = label.value.strip() if label is not None else ""
         if label is not None and name and name not in LABELS and not name.startswith(("scalar", "mass")):
             nearest = did_you_mean(name, LABELS)
             if nearest:
+                fix = Fix((label.replaced(nearest),), safe=False)
                 yield self.warning(
-                    f"no method has a condition on {name!r}", label, f"did you mean {nearest}?"
+                    f"no method has a condition on {name!r}", label, f"did you mean {nearest}?", fix
                 )
 
     def _check_value(self, condition: Element) -> Iterator[Diagnostic]:
@@ -114,14 +120,9 @@ class BoundaryValue(Rule):
         value = condition.get("value")
         if kind.value.strip() in VALUED:
             yield from self._check_prescribed(condition, label.value.strip(), value)
-        elif (
-            kind.value.strip() in NUMBERED
-            and value is not None
-            and value.texts
-            and numbers(value.text) is None
-        ):
+        elif kind.value.strip() in NUMBERED and value is not None and not _is_value(value.text):
             message = f"the <value> of {label.value} is {value.text!r}; it must be a number"
-            yield self.error(message, value.texts[0], "write a number")
+            yield self.error(message, value, "write a number")
 
     def _check_prescribed(
         self, condition: Element, label: str, value: Element | None
@@ -139,3 +140,8 @@ class BoundaryValue(Rule):
             yield self.error(message, value.texts[0], f"write {form}")
         elif len(found) != width:  # Uintah passes over a wrong number of them
             yield self.warning(message, value.texts[0], f"write {form}")
+
+
+def _is_value(text: str) -> bool:
+    """Whether a text is nothing, a number, or a list of them in brackets."""
+    return not text or number(text) is not None or (text.startswith("[") and numbers(text) is not None)
