@@ -21,11 +21,15 @@ def existing_file(open_file: OpenFile, name: str) -> Path | None:
     return path if path.is_file() else None
 
 
+class MissingFileError(FileNotFoundError, ValueError):
+    """A file that a body is made from is not there: the deck, or the folder that it is run in, is wrong."""
+
+
 def find_file(open_file: OpenFile, name: str, what: str) -> Path:
-    """The place of a file; ValueError that says what it is for if there is none."""
+    """The place of a file; MissingFileError that says what it is for if there is none."""
     path = existing_file(open_file, name)
     if path is None:
-        raise ValueError(f"cannot find the file {name!r} with {what}")
+        raise MissingFileError(f"cannot find the file {name!r} with {what}")
     return path
 
 

@@ -104,6 +104,8 @@ def timed(**tags: str) -> str:
 
 
 COMPUTED = on_face("none").replace('"Dirichlet" label="Velocity"', '"computeFromDensity" label="SpecificVol"')
+BOX = '<box label="left"><min>[0.1,0.1,0.0]</min><max>[0.4,0.4,0.1]</max></box>'
+FROM_FILE = LEFT.replace(BOX, "<file><name>points.txt</name></file>")
 OFTEN = deck(archiver="<outputInterval>1e-3</outputInterval>", time="")
 UNEVEN = "<spacing>[0.3,0.1,0.1]</spacing>"
 
@@ -181,6 +183,8 @@ BREAKING = [
     ("UPS421", "warning", metal(COPPER_HEAT).replace("8930", "2700"), "specific heat of copper"),
     ("UPS421", "note", metal().replace("[20.0,3.0,0.0]", "[1200,0,0]"), "none for shocks"),
     ("UPS422", "warning", gas_deck(), "the face x- has no condition on Pressure"),
+    ("UPS408", "error", deck(materials=FROM_FILE), "points.txt"),
+    ("UPS424", "error", deck(saves=("p.mass", "p.stress")), "p.mass is saved, and p.x"),
     ("UPS502", "warning", metal().replace(">300<", ">1400<"), "melts at 1356"),
     ("UPS503", "warning", on_face("[9000,0,0]"), "the face moves at 9000"),
     ("UPS504", "warning", deck(materials=GRAVITY).replace("[0,0,0]</gravity>", "[0,-9.81,0]</gravity>"), "mixed"),
