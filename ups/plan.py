@@ -6,9 +6,11 @@ import math
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
+from solver.declare import FAMILIES, fields
 from ups.archive_size import readable_size, size_of_output
-from ups.deck import Specification, read_deck
+from ups.deck import MaterialSection, Specification, read_deck
 
 BYTES_A_PARTICLE = 700
 """Memory that a particle takes: its state and that of its model, at the start and the end of a step."""
@@ -28,6 +30,8 @@ class MaterialPlan:
     name: str
     model: str
     particles: int
+    parts: tuple[str, ...] = ()
+    """The models that the deck chose within it: flow stress, equation of state, damage and the like."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,8 @@ class RunPlan:
     ----------
     materials : in the order of their indices.
     zones : name and number of the cohesive zones of each file, whose materials come after these.
+    interpolator : the shape functions between particles and nodes.
+    contacts, loads : the laws and the loads by their names in the deck.
     cells : of the grid in each direction.
     nodes : of the grid, those outside its faces included.
     first_step : the first time step, in the deck's unit of time.
@@ -49,6 +55,9 @@ class RunPlan:
 
     materials: tuple[MaterialPlan, ...]
     zones: tuple[tuple[str, int], ...]
+    interpolator: str
+    contacts: tuple[str, ...]
+    loads: tuple[str, ...]
     cells: tuple[int, int, int]
     nodes: int
     first_step: float
@@ -82,7 +91,13 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     usual = control.usual_step(stable)
     steps = control.foreseen_steps(stable, control.initTime)
     materials = tuple(
-        MaterialPlan(body.index, section.name, _model_name(section.constitutive_model), len(body.particles))
+        MaterialPlan(
+            body.index,
+            section.name,
+            _model_name("constitutive_model", section.constitutive_model),
+            len(body.particles),
+            tuple(_parts(section)),
+        )
         for body, section in zip(simulation.bodies, specification.materials, strict=True)
     )
     zones = tuple((tied.law.name, len(tied.zones.area)) for tied in simulation.cohesive_zones)
@@ -92,6 +107,9 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     return RunPlan(
         materials=materials,
         zones=zones,
+        interpolator=specification.MPM.interpolator,
+        contacts=tuple(_model_name("contact", c) for c in specification.MaterialProperties.MPM.contact),
+        loads=tuple(_model_name("load", load) for load in specification.PhysicalBC.MPM.loads),
         cells=simulation.grid.cells,
         nodes=nodes,
         first_step=first,
@@ -107,11 +125,23 @@ def plan_run(path: str | os.PathLike[str]) -> RunPlan:
     )
 
 
-def _model_name(model: object) -> str:
-    from solver.declare import FAMILIES
-
-    names = FAMILIES["constitutive_model"].models.items()
+def _model_name(family: str, model: object) -> str:
+    """The name by which a deck chooses a model."""
+    names = FAMILIES[family].models.items()
     return next((name for name, record in names if isinstance(model, record)), type(model).__name__)
+
+
+def _parts(section: MaterialSection) -> Iterator[str]:
+    """The models within a material, by tag and name."""
+    records: tuple[Any, ...] = (section.constitutive_model, section)
+    for record in records:
+        for info in fields(type(record)):
+            part = getattr(record, info.name)
+            if info.sub_model is None or info.many or part is None or info.name == "constitutive_model":
+                continue
+            name = _model_name(info.sub_model.family, part)
+            if name != "none":
+                yield f"{info.tag} {name}"
 
 
 def _outputs(specification: Specification, steps: int, step: float) -> int:
@@ -136,8 +166,14 @@ def _lines(plan: RunPlan) -> Iterator[str]:
     for material in plan.materials:
         name = f" ({material.name})" if material.name else ""
         yield f"material {material.index}  {material.model}{name}, {material.particles} particles"
+        yield from (f"              {part}" for part in material.parts)
     for number, (name, count) in enumerate(plan.zones, len(plan.materials)):
         yield f"material {number}  {count} cohesive zones{f' ({name})' if name else ''}"
+    yield f"weights     {plan.interpolator}"
+    if plan.contacts:
+        yield f"contact     {', '.join(plan.contacts)}"
+    if plan.loads:
+        yield f"loads       {', '.join(plan.loads)}"
     yield f"particles   {plan.particles}"
     yield f"first step  {plan.first_step:.4g}"
     yield f"steps       about {plan.steps}"

@@ -43,11 +43,11 @@ class NoContact(Rule):
         if not all(lists):
             return  # one without a list is for all materials
         named = {int(n) for given in lists for n in given or () if math.isfinite(n)}
-        apart = [index for index in range(count) if index not in named]
+        apart = [index for index in range(len(materials)) if index not in named]
         if apart:
             which = f"material {apart[0]} is" if len(apart) == 1 else f"materials {_listed(apart)} are"
             message = f"{which} in no <contact>: the others pass through"
-            yield self.warning(message, materials[min(apart[0], len(materials) - 1)], "add to the <materials> of a contact")
+            yield self.warning(message, materials[apart[0]], "add to the <materials> of a contact")
 
 
 def _listed(indices: list[int]) -> str:
