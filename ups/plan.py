@@ -135,7 +135,7 @@ def _parts(section: MaterialSection) -> Iterator[str]:
     """The models within a material, by tag and name."""
     records: tuple[Any, ...] = (section.constitutive_model, section)
     for record in records:
-        for info in fields(type(record)):
+        for info in fields(record.__class__):
             part = getattr(record, info.name)
             if info.sub_model is None or info.many or part is None or info.name == "constitutive_model":
                 continue
