@@ -202,7 +202,10 @@ def _say(answer: tuple[str, int]) -> None:
 @click.option("--select", multiple=True, metavar="CODE", help="Only findings whose code begins so.")
 @click.option("--ignore", multiple=True, metavar="CODE", help="No findings whose code begins so.")
 @click.option(
-    "--jobs", type=click.IntRange(min=1), default=None, help="How many processes share the decks; by default all."
+    "--jobs",
+    type=click.IntRange(min=1),
+    default=None,
+    help="How many processes share the decks; by default all.",
 )
 @click.option("--fix", is_flag=True, help="Do the safe repairs in the files that hold the cause.")
 @click.option("--unsafe", is_flag=True, help="With --fix or --diff: the other repairs, too.")
