@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import subprocess
 import sys
 import time
@@ -222,6 +223,14 @@ def test_hostile_files_end_soon_and_without_exception(tmp_path, content):
     checked = lint_deck(path)
     without_suppressed(checked.diagnostics, checked.sources)
     assert time.process_time() - start < 5.0
+
+
+@pytest.mark.parametrize("value", ["0", "-1", "1e300", "1e-300", "-1e300", "9" * 300])
+def test_numbers_beyond_sense_give_findings_and_no_exception(value):
+    """Every number of a deck in turn."""
+    text = deck(materials=METAL, archiver="<outputInterval>0.1</outputInterval>", time="")
+    for match in re.finditer(r"(?<=[>\[,])-?[\d.]+(?:e\d+)?(?=[<\],])", text):
+        lint_text(text[: match.start()] + value + text[match.end() :])
 
 
 def test_no_line_of_a_file_that_is_no_xml_is_shown(tmp_path):

@@ -191,6 +191,8 @@ def _values(spot: Spot, owner: Inside | None, tag: OpenTag, file: Path | None) -
         yield from _files(spot, file)
     elif tag.tag == "save" and spot.attribute == "label":
         yield from _labels(spot)
+    elif tag.tag == "BCType" and spot.attribute in ("label", "var"):
+        yield from _conditions(spot)
     elif tag.tag == "SimulationComponent" and spot.attribute == "type":
         yield from _components(spot)
     elif owner is not None and owner.family is not None and owner.family.key == f"@{spot.attribute}":
@@ -234,6 +236,14 @@ def _labels(spot: Spot) -> Iterator[Proposal]:
     for name, label in LABELS.items():
         unit = f" ({label.unit})" if label.unit else ""
         yield Proposal(name, Sort.LABEL, name, spot.start, spot.end, f"{label.meaning}{unit}")
+
+
+def _conditions(spot: Spot) -> Iterator[Proposal]:
+    from ups.rules.boundary_value import KINDS, LABELS
+
+    for word in LABELS if spot.attribute == "label" else KINDS:
+        what = "what the face prescribes" if spot.attribute == "label" else "kind of condition"
+        yield Proposal(word, Sort.WORD, word, spot.start, spot.end, what)
 
 
 def _components(spot: Spot) -> Iterator[Proposal]:

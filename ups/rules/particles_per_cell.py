@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ups.diagnostics import Diagnostic, register_code
 from ups.element import Element
-from ups.rules.bodies import Body, bodies
+from ups.rules.bodies import Body, bodies, is_moved_from_outside
 from ups.rules.rule import DeckView, Rule
 
 _MOST = 10
@@ -36,7 +36,8 @@ class ParticlesPerCell(Rule):
         if deck.domain is None or deck.domain.spacing is None:
             return
         name = deck.text("MPM/interpolator", "linear")
-        for body in (b for material in deck.particle_materials for b in bodies(deck, material)):
+        deforming = [m for m in deck.particle_materials if not is_moved_from_outside(deck, m)]
+        for body in (b for material in deforming for b in bodies(deck, material)):
             at = body.element.get("res")
             if at is not None and body.res is not None:
                 yield from self._check(deck, body, body.res, at, name)

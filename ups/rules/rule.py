@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import math
 import pkgutil
 from collections.abc import Iterator
 from functools import cache, cached_property
@@ -104,7 +105,7 @@ class DeckView:
             return None
         lower = [min(c[0][a] for c in given) for a in range(3)]
         upper = [max(c[1][a] for c in given) for a in range(3)]
-        if any(not high > low for low, high in zip(lower, upper, strict=True)):
+        if any(not high > low or math.isinf(high - low) for low, high in zip(lower, upper, strict=True)):
             return None
         return Domain(lower, upper, _spacing(level, *given[0]))
 
@@ -122,9 +123,9 @@ def _spacing(
     for owner in (box, level):
         found = _vector(owner, "spacing") if owner is not None else []
         if found:
-            return found
+            return found if all(0.0 < cell < math.inf for cell in found) else None
     cells = _vector(box, "resolution")
-    if not cells or any(n < 1 for n in cells):
+    if not cells or any(not 1 <= n < math.inf for n in cells):
         return None
     return [(high - low) / n for low, high, n in zip(lower, upper, cells, strict=True)]
 

@@ -60,6 +60,8 @@ def test_all_that_a_model_needs_can_be_put_in_at_once():
         ("<type>single_velocity", "<type>|", {"single_velocity", "friction_bard"}),
         ('<save label="p.x"', '<save label="|"', {"p.x", "p.stress", "g.mass", "KineticEnergy"}),
         ('<Face side="z-"', '<Face side="|"', {"x-", "z+"}),
+        ('var="symmetry"', 'var="|"', {"Dirichlet", "Neumann", "symmetry"}),
+        ('label="Symmetric"', 'label="|"', {"Velocity", "Symmetric", "Temperature"}),
         ('<SimulationComponent type="mpm"', '<SimulationComponent type="|"', {"mpm", "mpmice"}),
         ('<Face side="z-"', "<Face |", {"side", "circle"}),
         ("<contact><type>single_velocity</type>", "<contact><|", {"type"}),
