@@ -9,14 +9,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from solver.declare import FAMILIES, fields
-from ups.archive_size import readable_size, size_of_output
 from ups.deck import MaterialSection, Specification, read_deck
-
-BYTES_A_PARTICLE = 700
-"""Memory that a particle takes: its state and that of its model, at the start and the end of a step."""
-
-BYTES_A_NODE = 250
-"""Memory that a node takes for each material."""
+from ups.sizes import BYTES_A_NODE, BYTES_A_PARTICLE, readable_size, size_of_output
 
 SECONDS_A_PARTICLE_STEP = 3.0e-7
 """Time that a particle takes in a step on one core, of a common model."""

@@ -52,9 +52,17 @@ def suppressions(file: str, text: str) -> list[Suppression]:
         alone = not text[start : match.start()].strip()
         codes = tuple(code for code in re.split(r"[,\s]+", match.group(2)) if code)
         whole_file = match.group(1) == "ignore-file"
-        removal = Fix((Edit(file, match.start(), match.end(), ""),))
+        removal = Fix((_removal(file, text, match, start, alone),))
         found.append(Suppression(at, 0 if whole_file else line + alone, codes, removal))
     return [s for s in found if s.codes]
+
+
+def _removal(file: str, text: str, comment: re.Match[str], line_start: int, alone: bool) -> Edit:
+    """The edit that takes a comment out, with its line when nothing else stands on it, or the blanks before it."""
+    rest = re.compile(r"[ \t]*(\r\n|\r|\n)").match(text, comment.end())
+    if alone and rest is not None:
+        return Edit(file, line_start, rest.end(), "")
+    return Edit(file, len(text[: comment.start()].rstrip(" \t")), comment.end(), "")
 
 
 def without_suppressed(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> list[Diagnostic]:

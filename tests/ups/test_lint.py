@@ -105,6 +105,20 @@ def test_a_comment_that_keeps_nothing_quiet_is_reported():
     assert [(d.code, d.location.line) for d in result.diagnostics] == [("UPS014", 3)]
 
 
+@pytest.mark.parametrize(
+    ("comment", "before"),
+    [
+        ("  <!-- ups: ignore UPS102 -->\n", "  <Meta>"),
+        (" <!-- ups: ignore UPS102, UPS4 -->", "\n  <SimulationComponent"),
+    ],
+)
+def test_a_comment_that_keeps_nothing_quiet_is_removed_without_a_trace(tmp_path, comment, before):
+    path = tmp_path / "deck.ups"
+    path.write_text(deck().replace(before, comment + before))
+    _, done = fix_files([path])
+    assert (done, path.read_text()) == (1, deck())
+
+
 def test_codes_are_selected_by_prefix():
     text = OLD.replace("<density>1000.0", "<density>x")
     assert codes(text) == ["UPS304", "UPS203"]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ups.deck import Deck
 from ups.diagnostics import Diagnostic, Location
-from ups.document import INCLUDE_ROOTS, Document
+from ups.document import DECK_ROOTS, INCLUDE_ROOTS, Document, read_document
 from ups.element import Element
 from ups.lint import DECK_SUFFIX, component_of, lint_deck
 from ups.lsp.context import DEFAULT_COMPONENT
@@ -109,13 +109,17 @@ class Project:
         if path.endswith(DECK_SUFFIX):
             yield from dict.fromkeys((path, *including))
         else:
-            yield from including or _including(path)
+            yield from including or list(_including(path)) or (path,)
 
     def _checked(self, path: str) -> Checked:
         deck = lint_deck(path, unsaved=self.texts)
-        sources = deck.sources
+        root, sources = deck.document.root, deck.sources
+        found: Iterable[Diagnostic] = deck.diagnostics
+        if root is not None and root.tag in INCLUDE_ROOTS and root.tag not in DECK_ROOTS:
+            # a file that no deck includes: only its form can be checked
+            found = read_document(path, unsaved=self.texts, roots=INCLUDE_ROOTS).diagnostics
         files = frozenset((path, *(os.path.realpath(name) for name in sources)))
-        return Checked(deck, without_suppressed(deck.diagnostics, sources), files)
+        return Checked(deck, without_suppressed(found, sources), files)
 
 
 def _as_open_tag(element: Element) -> OpenTag:

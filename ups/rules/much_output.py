@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ups.archive_size import readable_size, size_of_output
 from ups.diagnostics import Diagnostic, register_code
-from ups.plan import BYTES_A_NODE, BYTES_A_PARTICLE
 from ups.rules.bodies import particles_at_most, stable_step
 from ups.rules.rule import DeckView, Rule
+from ups.sizes import BYTES_A_NODE, BYTES_A_PARTICLE, readable_size, size_of_output
 
 _MANY = 20000
 _LARGE = 200.0e9

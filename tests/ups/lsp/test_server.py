@@ -171,6 +171,18 @@ def test_a_finding_is_shown_in_the_included_file_that_holds_the_cause(tmp_path):
     edit(session)
 
 
+def test_a_file_that_no_deck_includes_is_checked_for_its_form(tmp_path):
+    path = tmp_path / "alone.xml"
+
+    async def session(editor: Editor) -> None:
+        editor.open(path, "<Uintah_Include><density>1</densty></Uintah_Include>")
+        await editor.sees(path, ["UPS003"])
+        editor.type(path, "<Uintah_Include><density>1</density></Uintah_Include>")
+        await editor.sees(path, [])
+
+    edit(session)
+
+
 async def completion(editor: Editor, path: Path, at: types.Position) -> dict[str, types.CompletionItem]:
     params = types.CompletionParams(types.TextDocumentIdentifier(path.as_uri()), at)
     found = await editor.client.text_document_completion_async(params)

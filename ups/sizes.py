@@ -1,8 +1,14 @@
-"""How much an archive takes, foreseen from what a deck saves."""
+"""How much memory a run takes, and how much its archive, foreseen from a deck."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+
+BYTES_A_PARTICLE = 700
+"""Memory that a particle takes: its state and that of its model, at the start and the end of a step."""
+
+BYTES_A_NODE = 250
+"""Memory that a node takes for each material."""
 
 _UNITS = ("B", "kB", "MB", "GB", "TB")
 _TENSORS = ("stress", "deformationMeasure", "velGrad", "size", "scalefactor", "rotation")
