@@ -16,6 +16,8 @@ from ups.grammar.index import Place, places
 
 _WORDS = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}
 _MOST_PLACES = 12
+_WITH_STATE = ("constitutive_model", "damage", "erosion")
+"""The families whose models keep a state for each particle."""
 
 
 def explain(name: str) -> str | None:
@@ -215,14 +217,40 @@ def _default(info: FieldInfo) -> str:
 
 
 def explain_label(name: str) -> str | None:
-    """What a variable of ``<save>`` means; None where there is none of that name."""
+    """What a variable of ``<save>`` means, and which models compute it; None where there is none of that name."""
     from ups.grammar.saved_labels import LABELS
 
     label = LABELS.get(name)
     if label is None:
         return None
     unit = f", in {label.unit}" if label.unit else ""
-    return f'<save label="{name}"/>: {label.meaning or "a variable of another method"}{unit}'
+    page = f'<save label="{name}"/>: {label.meaning or "a variable of another method"}{unit}'
+    models = [f"{tag} {', '.join(names)}" for tag, names in _computed_by(name).items()]
+    return f"{page}\n  computed by {'; '.join(models)}" if models else page
+
+
+def _computed_by(label: str) -> dict[str, list[str]]:
+    """Tag of a family -> the models of it that keep a variable for each particle."""
+    from solver.particles import state_variables
+
+    found: dict[str, list[str]] = {}
+    for family in (FAMILIES[name] for name in _WITH_STATE):
+        for name, record in family.models.items():
+            state = _state_of(record)
+            if state is not None and any(v.label == label for v in state_variables(state).values()):
+                found.setdefault(family.tag, []).append(name)
+    return found
+
+
+def _state_of(record: type) -> type | None:
+    """The state arrays of a model as it is without options; None where that depends on what a deck says."""
+    from solver.materials.constitutive import state_record
+
+    required = {info.name: 1.0 for info in fields(record) if info.required}
+    try:
+        return state_record(record(**required))
+    except (TypeError, ValueError, AttributeError):
+        return None
 
 
 def explain_command(name: str) -> tuple[str, int]:

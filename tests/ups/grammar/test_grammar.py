@@ -70,6 +70,7 @@ def test_every_code_is_explained():
         ("friction_bard", ("<contact> <type>friction_bard</type>", "Coulomb")),
         ("use_load_curves", ("default false", "<MPM>", "example:")),
         ("p.stress", ("Cauchy", "Pa")),
+        ("p.plasticStrain", ("computed by constitutive_model", "elastic_plastic")),
         ("UPS402", ("Why.", "Repair.")),
         ("plasticity_model", ("flow_model",)),
     ],
