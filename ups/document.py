@@ -184,7 +184,8 @@ class _DeckReader:
             self.diagnostics.error("UPS008", message, root)
         else:
             suggestion = suggestion_for(root.tag, roots, "<{}>") or f"a deck begins with {wanted}"
-            self.diagnostics.error("UPS008", f"the root is <{root.tag}>, not {wanted}", root, suggestion)
+            fix = Fix(tuple(root.renamed(roots[0])), safe=False)
+            self.diagnostics.error("UPS008", f"the root is <{root.tag}>, not {wanted}", root, suggestion, fix)
 
     def _expand(
         self, content: list[Element | Comment], parent: Element, chain: tuple[str, ...]

@@ -62,6 +62,13 @@ def test_unsafe_fixes_wait_to_be_asked_for(tmp_path):
     assert path.read_text() == deck(materials=LEFT)
 
 
+def test_a_wrong_root_is_renamed_on_request(tmp_path):
+    path = tmp_path / "root.ups"
+    path.write_text(deck().replace("Uintah_specification", "uintah_spec"))
+    result, done = fix_files([path], unsafe=True)
+    assert (done, len(result.diagnostics), path.read_text()) == (1, 0, deck())
+
+
 def test_a_cause_in_an_included_file_is_repaired_there(tmp_path):
     constants = "<D1>0.05</D1>\n    <D2>3.44</D2>\n    <D3>-2.12</D3>\n    <D4>0.002</D4>\n    <D5>0.61</D5>"
     included = tmp_path / "damage.xml"
