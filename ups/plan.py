@@ -151,7 +151,9 @@ def _outputs(specification: Specification, steps: int, step: float) -> int:
 def _bytes_an_output(specification: Specification, counts: dict[str, int]) -> int:
     """Size of one output; ``counts`` has the number of values of labels by what these begin with."""
     archiver = specification.DataArchiver
-    return int(size_of_output((save.label for save in archiver.save), counts, single=archiver.outputDoubleAsFloat))
+    return int(
+        size_of_output((save.label for save in archiver.save), counts, single=archiver.outputDoubleAsFloat)
+    )
 
 
 def _lines(plan: RunPlan) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""UPS425."""
+"""UPS428."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class ContactTwice(Rule):
     **Repair.** Remove one, or correct its list of materials.
     """
 
-    code = register_code("UPS425", "two contacts of the same materials")
+    code = register_code("UPS428", "two contacts of the same materials")
     title = "two contacts of the same materials"
 
     def check(self, deck: DeckView) -> Iterator[Diagnostic]:

@@ -78,4 +78,6 @@ class MuchOutput(Rule):
         saves = (save.attributes.get("label") for save in deck.all("DataArchiver/save"))
         labels = [label.value.strip() for label in saves if label is not None]
         single = deck.switch("DataArchiver/outputDoubleAsFloat")
-        return size_of_output(labels, {"p.": particles, "g.": nodes * max(deck.material_count, 1)}, single=single)
+        return size_of_output(
+            labels, {"p.": particles, "g.": nodes * max(deck.material_count, 1)}, single=single
+        )

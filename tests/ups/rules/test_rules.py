@@ -185,7 +185,7 @@ BREAKING = [
     ("UPS422", "warning", gas_deck(), "the face x- has no condition on Pressure"),
     ("UPS408", "error", deck(materials=FROM_FILE), "points.txt"),
     ("UPS424", "error", deck(saves=("p.mass", "p.stress")), "p.mass is saved, and p.x"),
-    ("UPS425", "warning", deck(materials=LEFT + RIGHT + CONTACT + CONTACT.replace("[0,1]", "[1,0]")), "already"),
+    ("UPS428", "warning", deck(materials=LEFT + RIGHT + CONTACT + CONTACT.replace("[0,1]", "[1,0]")), "already"),
     ("UPS502", "warning", metal().replace(">300<", ">1400<"), "melts at 1356"),
     ("UPS503", "warning", on_face("[9000,0,0]"), "the face moves at 9000"),
     ("UPS504", "warning", deck(materials=GRAVITY).replace("[0,0,0]</gravity>", "[0,-9.81,0]</gravity>"), "mixed"),
