@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from solver.domains.communicator import Communicator
     from ups.archive import ArchiveError
     from ups.deck import Deck
     from ups.diagnostics import DeckError
@@ -23,8 +24,33 @@ FAULT, INTERRUPTED = 1, 130
 
 
 @contextmanager
-def _orderly(verbose: bool = False) -> Iterator[None]:
-    """Print diagnostics instead of tracebacks, and leave with the exit status that fits."""
+def _orderly(verbose: bool = False, ranks: Communicator | None = None) -> Iterator[None]:
+    """Print diagnostics instead of tracebacks, and leave with the exit status that fits.
+
+    Of several ranks one speaks; where only some failed, the others are ended.
+    """
+    if ranks is None or ranks.size == 1:
+        with _alone_orderly(verbose):
+            yield
+        return
+    try:
+        yield
+    except BaseException as problem:
+        if isinstance(problem, SystemExit):
+            raise
+        alike = ranks.all_failed()
+        if alike and ranks.rank:
+            sys.exit(FAULT)
+        try:
+            with _alone_orderly(verbose):
+                raise
+        finally:
+            if not alike:
+                ranks.abort()
+
+
+@contextmanager
+def _alone_orderly(verbose: bool) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
@@ -107,6 +133,9 @@ def _overrides(
 @click.option(
     "--set", "overrides", multiple=True, metavar="PATH=VALUE", callback=_overrides, help="Set a tag."
 )
+@click.option(
+    "--ranks-per-file", type=click.IntRange(min=1), default=1, metavar="N", help="With mpirun: fewer files."
+)
 @click.option("--threads", type=click.IntRange(min=1), metavar="N", help="Use N cores; by default all.")
 @click.option(
     "--live",
@@ -124,6 +153,7 @@ def run(
     step: int | None,
     max_steps: int | None,
     overrides: list[tuple[str, str]],
+    ranks_per_file: int,
     threads: int | None,
     live: str | None,
     quiet: bool,
@@ -131,7 +161,8 @@ def run(
 ) -> None:
     """Run DECK and write its archive, or go on with the run of an ARCHIVE.
 
-    Without --output a restart continues the archive in place.
+    Without --output a restart continues the archive in place. Several processes share the work with
+    mpirun -np N ups run ...
     """
     if deck is None and restart is None and live:
         deck, live = live, ""  # `ups run --live DECK`
@@ -139,11 +170,13 @@ def run(
         raise click.UsageError("give either a DECK or --restart ARCHIVE")
     if step is not None and restart is None:
         raise click.UsageError("--from belongs to --restart")
-    with _orderly(verbose):
+    ranks = _ranks()
+    with _orderly(verbose, ranks):
         from ups.deck import read_deck
         from ups.progress import Interrupts, Progress, compilation_notice
         from ups.session import resume_run, run_deck
 
+        quiet = quiet or ranks.rank > 0
         go: Callable[..., Result]
         if restart is not None:
             go = partial(resume_run, restart, step=step, overrides=overrides)
@@ -154,8 +187,8 @@ def run(
             go = partial(run_deck, loaded)
         interrupts = Interrupts()
         observers: list[Observer] = [interrupts] if quiet else [interrupts, Progress()]
-        show_warnings = checked = _printer_of_warnings(verbose, quiet)
-        if live is not None:
+        show_warnings = checked = _printer_of_warnings(verbose and not ranks.rank, quiet)
+        if live is not None and ranks.rank == 0:
             from ups.pictures.live import Live, check_variable
             from ups.pictures.window import has_display
 
@@ -169,12 +202,26 @@ def run(
                 output=output,
                 max_steps=max_steps,
                 threads=threads,
+                ranks_a_file=ranks_per_file,
                 observers=observers,
                 checked=checked,
+                communicator=ranks,
             )
-        if interrupts.received:
-            click.echo(f"go on with: ups run --restart {result.directory}", err=True)
-            sys.exit(128 + interrupts.received)
+        if received := max(ranks.allgather(interrupts.received)):
+            if ranks.rank == 0:
+                click.echo(f"go on with: ups run --restart {result.directory}", err=True)
+            sys.exit(128 + received)
+
+
+def _ranks() -> Communicator:
+    """The ranks that ``mpirun`` started, or this process alone."""
+    from solver.domains.mpi import MissingMpiError, world
+
+    try:
+        return world()
+    except MissingMpiError as problem:
+        click.echo(f"error: {problem}", err=True)
+        sys.exit(FAULT)
 
 
 def _printer_of_warnings(verbose: bool, quiet: bool) -> Callable[[Deck], None]:

@@ -80,6 +80,7 @@ class BoundaryConditions:
     """
 
     def __init__(self, regions: Sequence[Region], grid: Grid, materials: int, extra_nodes: bool) -> None:
+        self._given = (regions, materials)
         self._grid = grid
         self._extra_nodes = extra_nodes
         self._regions = {face: [r for r in regions if r.face == face] for face in FACES}
@@ -88,6 +89,11 @@ class BoundaryConditions:
             for label in ("Velocity", "Symmetric", *SCALARS)
             for m in range(materials)
         }
+
+    def on(self, grid: Grid) -> BoundaryConditions:
+        """The same conditions for another window of the grid."""
+        regions, materials = self._given
+        return BoundaryConditions(regions, grid, materials, self._extra_nodes)
 
     def apply_velocity(self, velocity: Array, material: int) -> None:
         """Impose prescribed velocities on nodal vectors (N, 3) in place."""
@@ -145,12 +151,20 @@ class BoundaryConditions:
         return low, high
 
     def _face_nodes(self, patch: Patch, face: str, extra: bool, shift: int = 0) -> Array:
-        """Storage indices of the outermost layer of nodes at a face, shifted inwards by ``shift`` layers."""
+        """Storage indices of the outermost layer of nodes at a face, shifted inwards by ``shift`` layers.
+
+        Those that this rank stores; copies in periodic directions count too.
+        """
         low, high = self._range(patch, extra)
         axis, plus = FACES.index(face) // 2, face.endswith("+")
         at = high[axis] - 1 - shift if plus else low[axis] + shift
         low[axis], high[axis] = at, at + 1
-        i, j, k = np.meshgrid(*(np.arange(a, b) for a, b in zip(low, high, strict=True)), indexing="ij")
+        first = self._grid.index.first
+        stored = []
+        for a in range(3):
+            indices = self._grid.node_indices(a)
+            stored.append(first[a] + np.flatnonzero((indices >= low[a]) & (indices < high[a])))
+        i, j, k = np.meshgrid(*stored, indexing="ij")
         return np.asarray(self._grid.flat(i, j, k)).ravel()
 
     def _region_nodes(self, patch: Patch, region: Region) -> Array:
@@ -197,7 +211,9 @@ class BoundaryConditions:
             # As in Uintah, the extra nodes above z mirror only where the domain is one cell thick.
             if axis < 2 or not plus or self._range(patch, extra=True)[1][2] == 3:
                 outer = self._face_nodes(patch, face, extra=True)
-                rows.append((MIRROR, axis, zero, outer, self._face_nodes(patch, face, extra=True, shift=2)))
+                mirrored = self._face_nodes(patch, face, extra=True, shift=2)
+                if len(outer):  # else a rank stores the nodes inside only
+                    rows.append((MIRROR, axis, zero, outer, mirrored))
             return rows
         outer = self._face_nodes(patch, face, extra=True) if self._extra_nodes else inner[:0]
         if condition.kind == "Dirichlet":

@@ -9,7 +9,7 @@ that the counter in a particle's id and everything drawn at random agree.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Annotated, Any, NamedTuple
 
@@ -23,6 +23,7 @@ from solver.geometry.union import Union
 from solver.grid import Grid, Patch
 from solver.materials.constitutive import Material
 from solver.particles import Particles, new_arrays
+from solver.random import Births
 
 Array = NDArray[Any]
 
@@ -120,13 +121,16 @@ class ParticleIds:
 
     def __init__(self, grid: Grid) -> None:
         self._grid = grid
-        self.born = np.zeros(grid.cells[0] * grid.cells[1] * grid.cells[2], np.int32)
-        """Particles born so far in each cell, x fastest."""
+        low, high = (np.array(corner) for corner in grid.own_cells)
+        self.born = np.zeros(np.prod(high - low), np.int32)
+        """Particles born so far in each cell of this rank, x fastest."""
 
     def assign(self, positions: Array) -> Array:
         """Ids (n,) for particles born at positions (n, 3), in this order; ValueError if a cell is full."""
         i, j, k = self._grid.cell_of(positions).T
-        cell = i + self._grid.cells[0] * (j + self._grid.cells[1] * k)
+        low, high = self._grid.own_cells
+        nx, ny = high[0] - low[0], high[1] - low[1]
+        cell = (i - low[0]) + nx * ((j - low[1]) + ny * (k - low[2]))
         order = np.argsort(cell, kind="stable")
         cells, first, count = np.unique(cell[order], return_index=True, return_counts=True)
         number = np.empty(len(cell), np.int64)
@@ -147,8 +151,9 @@ class Creation(NamedTuple):
     """(n,) which geom_object made a particle, counted from 0."""
     spacing: Array
     """(objects, 3) particle spacing of each geom_object."""
-    patch: Array
-    """(n,) id of the patch in which a particle was born."""
+    patch: Array | Births
+    """(n,) id of the patch in which a particle was born; where a rank makes only the particles of its own cells,
+    with their numbers there."""
     loadable: Array
     """(n,) where load curves may take hold: on the surface of bodies that were filled, and anywhere in pieces
     that list their own particles, unless they list the load curves too."""
@@ -191,7 +196,7 @@ def create_particles(
     tetrahedral: bool = False,
     find_surface: bool = False,
 ) -> Creation:
-    """Make the particles of a material.
+    """Make the particles of a material that lie in the cells of this rank.
 
     Parameters
     ----------
@@ -208,30 +213,78 @@ def create_particles(
     ValueError
         If particles would lie outside the grid, or on the wrong side of the axis, or a cell is too full.
     """
+    options = (axisymmetric, tetrahedral, find_surface)
+    batches = _batches(objects, grid, *options)
+    owner = np.repeat(np.arange(len(batches), dtype=np.int32), [len(b.position) for b in batches])
+    patch = np.concatenate([b.patch for b in batches]) if batches else np.zeros(0, np.int32)
+    # Patches are the outer loop: a stable sort moves patches together and keeps the rest.
+    order = _patch_by_patch(patch, grid)
+    particles, normal, concentration = _initial_state(batches, objects, material, order)
+    particles.id[...] = ids.assign(particles.position)
+    places: Any = np.array([p.id for p in grid.patches], np.int32)[patch[order]]
+    if grid.window is not None:
+        places = Births(places, lambda: _numbers(objects, grid, *options))
+    return Creation(
+        particles,
+        owner[order],
+        np.array([body.spacing(grid) for body in objects]).reshape(-1, 3),
+        places,
+        np.concatenate([b.loadable for b in batches])[order] if batches else np.zeros(0, bool),
+        normal,
+        concentration,
+    )
+
+
+def _batches(
+    objects: Sequence[GeometryObject], grid: Grid, axisymmetric: bool, tetrahedral: bool, find_surface: bool
+) -> list[_Batch]:
+    """The particles of each object, in the order of creation but for the patches."""
     in_rows = all(isinstance(p, Tri) for o in objects for p in o.pieces) and not any(
         abs(o.filling_levels) > 1 for o in objects
     )
     batches = []
     for body in objects:
         if isinstance(body.pieces[0], ParticleSource):
-            batches.append(_listed_particles(body, grid, axisymmetric, tetrahedral, find_surface))
+            batch = _listed_particles(body, grid, axisymmetric, tetrahedral, find_surface)
         else:
-            batches.append(_filled_particles(body, grid, axisymmetric, find_surface, in_rows))
-    owner = np.repeat(np.arange(len(batches), dtype=np.int32), [len(b.position) for b in batches])
-    patch = np.concatenate([b.patch for b in batches]) if batches else np.zeros(0, np.int32)
-    # Patches are the outer loop: a stable sort moves patches together and keeps the rest.
-    order: Any = np.argsort(patch, kind="stable") if len(grid.patches) > 1 else slice(None)
-    particles, normal, concentration = _initial_state(batches, objects, material, order)
-    particles.id[...] = ids.assign(particles.position)
-    return Creation(
-        particles,
-        owner[order],
-        np.array([body.spacing(grid) for body in objects]).reshape(-1, 3),
-        np.array([p.id for p in grid.patches], np.int32)[patch[order]],
-        np.concatenate([b.loadable for b in batches])[order] if batches else np.zeros(0, bool),
-        normal,
-        concentration,
+            batch = _filled_particles(body, grid, axisymmetric, find_surface, in_rows)
+        batches.append(batch if grid.window is None else _only_own(batch, grid))
+    return batches
+
+
+def _only_own(batch: _Batch, grid: Grid) -> _Batch:
+    """The particles in the cells of this rank."""
+    own = np.flatnonzero(_in_own_cells(batch.position, grid))
+    return batch._replace(
+        **{name: getattr(batch, name)[own] for name in _Batch._fields if name != "listed"},
+        listed={name: values[own] for name, values in batch.listed.items()},
     )
+
+
+def _in_own_cells(positions: Array, grid: Grid) -> Array:
+    low, high = grid.own_cells
+    cells = grid.cell_of(positions)
+    return np.asarray(((cells >= low) & (cells < high)).all(axis=1))
+
+
+def _patch_by_patch(patch: Array, grid: Grid) -> Any:
+    """The order in which particles are kept, given the index of the patch of each."""
+    return np.argsort(patch, kind="stable") if len(grid.patches) > 1 else slice(None)
+
+
+def _numbers(objects: Sequence[GeometryObject], grid: Grid, *options: bool) -> tuple[Array, Array]:
+    """For the particles of this rank their numbers in their patch, and among all particles of the material.
+
+    All particles are made for that, and forgotten.
+    """
+    whole = replace(grid, window=None)
+    batches = _batches(objects, whole, *options)
+    patch = np.concatenate([b.patch for b in batches])
+    order = _patch_by_patch(patch, grid)
+    patch = patch[order]
+    overall = np.arange(len(patch))
+    own = _in_own_cells(np.concatenate([b.position for b in batches])[order], grid)
+    return (overall - np.searchsorted(patch, patch))[own], overall[own]
 
 
 def _initial_state(
@@ -398,9 +451,14 @@ def _fill(
     """The lattice points of a patch in a shape, block by block."""
     lower, upper = (np.array(corner) for corner in shape.bounding_box())
     anchor, h = np.array(grid.anchor), np.array(grid.spacing)
+    least, most = np.array(patch.low), np.array(patch.high)
+    if not body.moves_particles:
+        own_low, own_high = grid.own_cells
+        most = np.minimum(most, own_high)
+        least = np.minimum(np.maximum(least, own_low), most)
     # A cell more on every side, to be safe from rounding; clipped to the patch before it is made an integer.
-    low = np.clip(np.floor((lower - anchor) / h) - 1.0, patch.low, patch.high).astype(int)
-    high = np.clip(np.floor((upper - anchor) / h) + 2.0, patch.low, patch.high).astype(int)
+    low = np.clip(np.floor((lower - anchor) / h) - 1.0, least, most).astype(int)
+    high = np.clip(np.floor((upper - anchor) / h) + 2.0, least, most).astype(int)
     if np.any(high <= low):
         return
     finest = 2 ** (max(abs(body.filling_levels), 1) - 1)

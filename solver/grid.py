@@ -44,6 +44,18 @@ class Patch:
     high: IntVector
 
 
+class Window(NamedTuple):
+    """The part of a grid that one rank of several holds: its own cells and a halo around them.
+
+    A rank keeps the particles in its own cells, low <= (i, j, k) < high, and the nodes that they can reach: those
+    of ``halo`` more layers of cells on every side. In periodic directions indices of nodes go on beyond the domain.
+    """
+
+    low: IntVector
+    high: IntVector
+    halo: int
+
+
 FACES = ("x-", "x+", "y-", "y+", "z-", "z+")
 """The six faces in the order in which boundary conditions are applied."""
 
@@ -60,6 +72,8 @@ class Grid:
     extra_cells : layers of cells around the domain that belong to no body, in each direction.
     periodic : 1 in the directions in which the domain repeats, else 0.
     patches : the blocks that tile the domain.
+    window : the part that this rank holds, or None for all of it. Only what is stored (``index``,
+        ``number_of_nodes``, ``flat``, ``as_box``, ``node_positions``) depends on it.
     """
 
     anchor: Vector
@@ -68,6 +82,12 @@ class Grid:
     extra_cells: IntVector
     periodic: IntVector
     patches: tuple[Patch, ...]
+    window: Window | None = None
+
+    @property
+    def own_cells(self) -> tuple[IntVector, IntVector]:
+        """First and past-last cells of this rank."""
+        return ((0, 0, 0), self.cells) if self.window is None else (self.window.low, self.window.high)
 
     @property
     def ghost(self) -> IntVector:
@@ -78,10 +98,28 @@ class Grid:
     @property
     def index(self) -> GridIndex:
         """The view of the grid for kernels."""
-        g, n = self.ghost, self.cells
-        first = (-g[0], -g[1], -g[2])
-        nodes = (n[0] + 1 + 2 * g[0], n[1] + 1 + 2 * g[1], n[2] + 1 + 2 * g[2])
-        return GridIndex(self.anchor, self.spacing, first, nodes)
+        (x0, x1), (y0, y1), (z0, z1) = (self._stored(axis) for axis in range(3))
+        return GridIndex(self.anchor, self.spacing, (x0, y0, z0), (x1 - x0, y1 - y0, z1 - z0))
+
+    def _stored(self, axis: int) -> tuple[int, int]:
+        """First and past-last stored nodes in a direction."""
+        low, high = -self.ghost[axis], self.cells[axis] + self.ghost[axis] + 1
+        if self.window is None:
+            return low, high
+        own_low, own_high = (
+            self.window.low[axis] - self.window.halo,
+            self.window.high[axis] + self.window.halo + 1,
+        )
+        if self.periodic[axis]:
+            return own_low, own_high
+        return max(low, own_low), min(high, own_high)
+
+    def node_indices(self, axis: int) -> Array:
+        """Indices of the stored nodes in a direction; a rank's images have the index of the node they repeat."""
+        low, high = self._stored(axis)
+        indices = np.arange(low, high)
+        repeats = self.window is not None and self.periodic[axis]
+        return indices % self.cells[axis] if repeats else indices
 
     @property
     def all_nodes(self) -> NodeBlock:
@@ -135,10 +173,7 @@ class Grid:
 
     def node_positions(self) -> Array:
         """Positions of all stored nodes in storage order, shape (nodes, 3)."""
-        axes = []
-        for axis in range(3):
-            first, count = self.index.first[axis], self.index.nodes[axis]
-            axes.append(self.anchor[axis] + (first + np.arange(count)) * self.spacing[axis])
+        axes = [self.anchor[axis] + self.node_indices(axis) * self.spacing[axis] for axis in range(3)]
         z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
         return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
 

@@ -41,12 +41,12 @@ class NodalStress:
 
     def attach(self, simulation: Simulation) -> None:
         """Record from now on."""
-        count = simulation.grid.number_of_nodes
-        self.values = np.zeros((len(simulation.bodies), count, 3, 3))
         simulation.after_boundary_conditions.append(self._record)
 
     def _record(self, simulation: Simulation, dt: float) -> None:
         if self.wanted:
+            count = simulation.grid.number_of_nodes
+            self.values = np.zeros((len(simulation.bodies), count, 3, 3))
             for m in range(len(simulation.bodies)):
                 self.values[m] = simulation.stress_at_nodes(m)
 
@@ -75,28 +75,37 @@ class FaceTractions:
         face = name.replace("minus", "-").replace("plus", "+")
         axis, outward = FACES.index(face) // 2, 1.0 if face.endswith("+") else -1.0
         grid, reductions = simulation.grid, simulation.reductions
+        nodes = np.flatnonzero(on_face(grid, face) & simulation.exchange.counted)
         traction = np.zeros(3)
         for m, stress in enumerate(stresses):
-            node_area = 2.0 * on_face(grid, simulation.nodal.volume[m], face) / grid.spacing[axis]
-            normal_stress = outward * on_face(grid, stress, face)[..., axis]
-            traction += (normal_stress * node_area[..., None]).sum(axis=(0, 1))
+            node_area = 2.0 * simulation.nodal.volume[m, nodes] / grid.spacing[axis]
+            normal_stress = outward * stress[nodes][..., axis]
+            traction += (normal_stress * node_area[..., None]).sum(axis=0)
         area = reductions["BndyContactCellArea_" + name, -1]
         force = reductions["BndyForce_" + name, -1]
+        communicator = simulation.exchange.communicator
+        total = communicator.total(np.array([*traction, area, force[axis]]))
+        traction, area, normal_force = total[:3], float(total[3]), float(total[4])
         if area > 0.0:
             traction /= area
         if traction[axis] ** 2 > NO_TRACTION:
-            area = force[axis] / traction[axis]
-        reductions["BndyTraction_" + name, -1] = traction
-        reductions["BndyContactArea_" + name, -1] = area
+            area = normal_force / traction[axis]
+        # Reductions are added up over the ranks when the step ends; these are complete already.
+        first = communicator.rank == 0
+        reductions["BndyTraction_" + name, -1] = traction if first else np.zeros(3)
+        reductions["BndyContactArea_" + name, -1] = area if first else 0.0
 
 
-def on_face(grid: Grid, nodal: Array, face: str) -> Array:
-    """The values (a, b, ...) of a nodal field (N, ...) on a face of the bounding box, without extra nodes."""
+def on_face(grid: Grid, face: str) -> Array:
+    """(N,) True for the nodes on a face of the bounding box, extra nodes left out."""
     axis = FACES.index(face) // 2
-    box = grid.as_box(nodal)
-    ranges: list[Any] = [slice(g, g + n + 1) for g, n in zip(grid.ghost, grid.cells, strict=True)]
-    ranges[axis] = grid.ghost[axis] + (grid.cells[axis] if face.endswith("+") else 0)
-    return np.asarray(box[tuple(ranges)])
+    inside = []
+    for a in range(3):
+        indices = grid.node_indices(a)
+        at = grid.cells[a] if face.endswith("+") else 0
+        inside.append(indices == at if a == axis else (indices >= 0) & (indices <= grid.cells[a]))
+    x, y, z = inside
+    return np.asarray(z[:, None, None] & y[:, None] & x).ravel()
 
 
 def project_stress(simulation: Simulation, body: Body) -> Array:

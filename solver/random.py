@@ -8,7 +8,8 @@ once, when particles are created.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -22,6 +23,28 @@ PERMUTATION = (4, 7, 10, 15, 6, 13, 1, 8, 12, 9, 0, 14, 5, 11, 2, 3)
 
 LANES = 12
 """Lanes of the generator: twelve hexadecimal digits make one number."""
+
+
+@dataclass(frozen=True)
+class Births:
+    """Where the particles of one rank were born, when other ranks make others of the same patches."""
+
+    patch: NDArray[Any]
+    """(n,) id of the patch of each."""
+    numbers: Callable[[], tuple[NDArray[Any], NDArray[Any]]]
+    """Finds how many particles of the material were made before each, in its patch and in all."""
+
+    def __len__(self) -> int:
+        return len(self.patch)
+
+
+def turns(patch: NDArray[Any] | Births) -> Iterator[tuple[int, NDArray[Any], NDArray[Any]]]:
+    """For each patch its id, which particles were born there, and the turn of each in the patch."""
+    places = patch.patch if isinstance(patch, Births) else patch
+    numbers = patch.numbers()[0] if isinstance(patch, Births) else None
+    for place in np.unique(places).tolist():
+        members = np.flatnonzero(places == place)
+        yield place, members, np.arange(members.size) if numbers is None else numbers[members]
 
 
 def patch_seed(seed: int, patch: int) -> int:
@@ -62,12 +85,13 @@ def musil(seed: int, count: int) -> Floats:
     return drawn
 
 
-def by_patch(patch: NDArray[Any], seed: int, per_particle: int = 1) -> Floats:
+def by_patch(patch: NDArray[Any] | Births, seed: int, per_particle: int = 1) -> Floats:
     """Numbers of [0, 1) for particles, each patch with a generator of its own.
 
     Parameters
     ----------
-    patch : patch id of each particle, (n,); the particles of a patch draw in the order of the array.
+    patch : patch id of each particle, (n,); the particles of a patch draw in the order of the array. For a rank
+        that has some of them only, its :class:`Births`: it draws for all, and keeps the numbers of its own.
     seed : the seed in the deck.
     per_particle : how many numbers in a row each particle draws.
 
@@ -75,11 +99,10 @@ def by_patch(patch: NDArray[Any], seed: int, per_particle: int = 1) -> Floats:
     -------
     The numbers, (n, per_particle).
     """
-    drawn = np.empty((patch.size, per_particle))
-    for number in np.unique(patch):
-        members = np.flatnonzero(patch == number)
-        values = musil(patch_seed(seed, int(number)), members.size * per_particle)
-        drawn[members] = values.reshape(members.size, per_particle)
+    drawn = np.empty((len(patch), per_particle))
+    for place, members, turn in turns(patch):
+        values = musil(patch_seed(seed, place), (int(turn.max()) + 1) * per_particle)
+        drawn[members] = values.reshape(-1, per_particle)[turn]
     return drawn
 
 

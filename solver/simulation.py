@@ -6,9 +6,9 @@ restarts are the caller's: a simulation knows nothing of them.
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -20,6 +20,9 @@ from solver.boundary_conditions import BoundaryConditions
 from solver.cohesive_zones import CohesiveZones
 from solver.contact.law import ContactLaw, ContactScene
 from solver.diffusion.solute import NoSolute
+from solver.domains.communicator import largest_number
+from solver.domains.exchange import Exchange, OneRank, Status
+from solver.domains.reach import reach
 from solver.flags import Flags
 from solver.grid import FACES, Grid, NodeBlock
 from solver.interpolation.shape import Sums
@@ -39,6 +42,7 @@ from solver.materials.constitutive import (
 )
 from solver.materials.failure import Failure
 from solver.nodal import NodalFields, new_nodal_fields
+from solver.nodal_stress import on_face, project_stress
 from solver.particles import Particles, keep
 from solver.team import Team, node_blocks
 
@@ -127,6 +131,7 @@ class Simulation:
     after_step : calls made before particles are sorted out: inserted particles.
     time_step_limits : functions of the time that bound the step from there.
     diffusion : the diffusion of a substance, which hooks let act; None without.
+    exchange : the other ranks; by default there are none.
     spread_corner_loads : adds external forces by particle corners (CBDI), in place of particle weights.
     whole_grid : nodes that no particle touches take part too, for those who look at nodal values afterwards.
     team : the threads that share the loops over particles; the results do not depend on how many they are.
@@ -154,12 +159,25 @@ class Simulation:
     time: float = 0.0
     step_number: int = 0
     reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
+    exchange: Exchange = None  # type: ignore[assignment]  # made from the grid where it is not given
 
     def __post_init__(self) -> None:
         """Make the arrays that live as long as the simulation, so that steps allocate nothing large."""
+        if self.exchange is None:
+            self.exchange = OneRank(self.grid)
+        self.face_forces: dict[str, tuple[float, float, float]] = {}
+        self._fault = ""
+        self._kinematics = stress.Kinematics(
+            self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
+        )
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        """Make the arrays of the nodes and cells that this rank holds."""
         count = self.grid.number_of_nodes
         self.nodal: NodalFields = new_nodal_fields(self.grid, len(self.bodies))
-        self._rows = new_rows(count, CHANNELS)
+        buffers = max(1, min(self.exchange.buffers, len(self.bodies)))
+        self._rows = [new_rows(count, CHANNELS) for _ in range(buffers)]
         self._touched = np.zeros((len(self.bodies), -(-count // 8) * 8), dtype=np.uint8)
         self._active_nodes = np.zeros((len(self.bodies), count), dtype=np.uintp)
         self._active = [listed[:0] for listed in self._active_nodes]
@@ -169,24 +187,20 @@ class Simulation:
         self._blocks: dict[int, tuple[int, int, list[NodeBlock]]] = {}
         self._temperature_star = np.zeros((len(self.bodies), count))
         self._projected_temperature = np.zeros((len(self.bodies), count))
-        self._images = _periodic_images(self.grid)
-        self._is_image = np.zeros(count, dtype=np.bool_)
-        self._is_image[self._images[1]] = True
         self._owned_nodes = _owned_nodes(self.grid)
         self._owned_cells = _owned_cells(self.grid)
+        self._uncounted = ~self.exchange.counted
+        self.node_positions = self.grid.node_positions()
         self._weight = self.boundary_conditions.node_to_cell_weight()
-        self._kinematics = stress.Kinematics(
-            self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
-        )
-        self._cell_stretch = np.zeros(len(self._owned_cells))
-        self.face_forces: dict[str, tuple[float, float, float]] = {}
+        low, high = self.grid.own_cells
+        self._cell_stretch = np.zeros(math.prod(b - a for a, b in zip(low, high, strict=True)))
 
     # ---- the time step -------------------------------------------------------------------------------------
 
     def initial_time_step(self) -> float:
         """The stable first step, from the models' initial wave speeds."""
         stable = min((self._initial_limit(body) for body in self.bodies), default=math.inf)
-        return self._bounded(stable)
+        return self._bounded(-largest_number(self.exchange.communicator, -stable))
 
     def _bounded(self, stable: float) -> float:
         return min([stable, *(limit(self.time) for limit in self.time_step_limits)])
@@ -216,8 +230,7 @@ class Simulation:
         self.reductions.clear()
         for action in self.before_step:
             action(self, dt)
-        for m, body in enumerate(self.bodies):
-            self._project(m, body)
+        self._project_all()
         scene = self._scene(dt)
         for law in self.contact_laws:
             law.apply(1, scene)
@@ -228,7 +241,6 @@ class Simulation:
         for m, body in enumerate(self.bodies):
             self._accelerate(m, body, dt)
         if self.flags.restart_on_large_nodal_velocity and self.too_fast(dt):
-            self.face_forces = dict(scene.face_forces)
             raise NodesTooFastError(f"step {self.step_number + 1}: a node would cross half a cell in {dt:g}")
         for law in self.contact_laws:
             law.apply(2, scene)
@@ -237,7 +249,7 @@ class Simulation:
             action(self, dt)
         if self.flags.explicit_heat_conduction:
             self._conduct_heat(dt)
-        self._share_images()
+        self._repeat_images()
         stable = math.inf
         for m, body in enumerate(self.bodies):
             cells = self._particle_cells(body)
@@ -254,6 +266,8 @@ class Simulation:
             action(self, dt)
         for body in self.bodies:
             self._settle(body)
+        self.exchange.migrate(self.bodies)
+        stable = self._conclude(stable)
         self.time += dt
         self.step_number += 1
         return self._bounded(stable)
@@ -270,6 +284,36 @@ class Simulation:
             self.bodies[index].records = records
         else:
             (self.cohesive_zones[index - len(self.bodies)].zones,) = records
+
+    def _reach(self) -> int:
+        """Layers of cells around this rank's own that its particles reach."""
+        if self.exchange.communicator.size == 1:
+            return 0
+        on_corners = self.spread_corner_loads is not None
+        return reach(self.interpolator, [body.particles for body in self.bodies], on_corners)
+
+    def _conclude(self, stable: float) -> float:
+        """Let all ranks agree on sums and on the stable step, and this one on what it holds from now on."""
+        status = self.exchange.conclude(Status(stable, self._reach(), bool(self._fault)), self.reductions)
+        for name in self.flags.boundary_traction_faces:
+            x, y, z = self.reductions["BndyForce_" + name, -1].tolist()
+            self.face_forces[name] = (x, y, z)
+        if status.fault:
+            faults = self.exchange.communicator.allgather(self._fault)
+            raise DivergedError(next(fault for fault in faults if fault))
+        self._follow(self.exchange.new_grid(status, self.bodies, self.step_number + 1))
+        return status.stable
+
+    def balance(self) -> None:
+        """Let the ranks share out the particles evenly, before the first step."""
+        self._follow(self.exchange.new_grid(Status(math.inf, 0, False), self.bodies, self.step_number))
+
+    def _follow(self, grid: Grid | None) -> None:
+        """Go on with another window of the grid, if there is one."""
+        if grid is not None:
+            self.grid = grid
+            self.boundary_conditions = self.boundary_conditions.on(grid)
+            self._lay_out()
 
     # ---- particles to grid ---------------------------------------------------------------------------------
 
@@ -288,25 +332,40 @@ class Simulation:
     def _is_active(self, body: Body) -> bool:
         return body.is_active and self.time >= body.activation_time
 
+    def _project_all(self) -> None:
+        """Project all bodies; the sums of one are on their way to other ranks while the next is projected."""
+        on_their_way: deque[tuple[int, Callable[[], None]]] = deque()
+        for m, body in enumerate(self.bodies):
+            if len(on_their_way) == len(self._rows):
+                self._arrive(*on_their_way.popleft())
+            self._project(m, body)
+            sums = self._sums_of(m)
+            on_their_way.append((m, self.exchange.add(sums.rows, touched=sums.touched)))
+        for arriving in on_their_way:
+            self._arrive(*arriving)
+
     def _project(self, m: int, body: Body) -> None:
-        """Mass, velocity, forces and temperature of a body at the nodes, with the conditions on symmetry faces."""
-        nodal, touched = self.nodal, self._touched[m]
+        """Sums over the particles of a body at the nodes: mass, momentum, forces, volume and heat."""
+        rows, touched = self._sums_of(m)
         nodes.forget(self._active[m], touched, self._fields[m])
         if self.whole_grid:
             touched[:] = 1
         if self._is_active(body):
             self._scatter(m, body)
             if self.flags.gradient_enhanced_projection:
-                transfer.add_gradients(self.interpolator, self.grid.index, body.particles, self._rows)
+                transfer.add_gradients(self.interpolator, self.grid.index, body.particles, rows)
             if self.spread_corner_loads is not None:
-                loads = self._rows[:, EXTERNAL_FORCE]
+                loads = rows[:, EXTERNAL_FORCE]
                 self.spread_corner_loads(body, loads)
                 touched[: len(loads)] |= loads.any(axis=1)
-        if len(self._images[0]):
-            nodes.fold_images(self._rows, touched, *self._images)
+
+    def _arrive(self, m: int, finish: Callable[[], None]) -> None:
+        """Velocity, forces and temperature of a body from its sums, with the conditions on symmetry faces."""
+        finish()
+        nodal, (rows, touched) = self.nodal, self._sums_of(m)
         count = nodes.list_touched(touched, touched.view(np.uint64), self._active_nodes[m])
         self._active[m] = self._active_nodes[m, :count]
-        nodes.normalise(self._rows, self._active[m], self._fields[m])
+        nodes.normalise(rows, self._active[m], self._fields[m])
         if self.flags.explicit_heat_conduction:
             self._projected_temperature[m] = nodal.temperature[m]
         self.boundary_conditions.apply_temperature(nodal.temperature[m], m)
@@ -322,7 +381,7 @@ class Simulation:
         self.team.run([partial(fill, block) for block in self._node_blocks(m, body)])
 
     def _sums_of(self, m: int) -> Sums:
-        return Sums(self._rows, self._touched[m])
+        return Sums(self._rows[m % len(self._rows)], self._touched[m])
 
     def _node_blocks(self, m: int, body: Body) -> list[NodeBlock]:
         """The blocks of nodes that threads fill, cut anew as particles move."""
@@ -345,25 +404,19 @@ class Simulation:
 
     def complete(self, m: int, sums: Array) -> None:
         """Add to nodal sums (N, components) of a body, in place, what nodes hold that are one and the same."""
-        if len(self._images[0]):
-            nodes.fold_images(sums, self._touched[m], *self._images)
+        self.exchange.add(sums)()
 
     def share(self, m: int, field: Array) -> None:
         """Give nodes that are one and the same the value (N,) of the one on which conditions act, in place."""
-        if len(self._images[0]):
-            nodes.copy_to_images(field.reshape(-1, 1), self._touched[m], *self._images)
+        self.exchange.repeat(field, self._touched[m])
 
-    def _share_images(self) -> None:
+    def _repeat_images(self) -> None:
         """Periodic directions: image nodes follow their owners, on which contact and conditions acted."""
-        if not len(self._images[0]):
-            return
         nodal = self.nodal
         for m in range(len(self.bodies)):
-            touched = self._touched[m]
-            for vectors in (nodal.velocity[m], nodal.velocity_star[m], nodal.acceleration[m]):
-                nodes.copy_to_images(vectors, touched, *self._images)
-            for scalars in (nodal.temperature_rate[m], self._temperature_star[m]):
-                nodes.copy_to_images(scalars.reshape(-1, 1), touched, *self._images)
+            vectors = (nodal.velocity[m], nodal.velocity_star[m], nodal.acceleration[m])
+            for values in (*vectors, nodal.temperature_rate[m], self._temperature_star[m]):
+                self.exchange.repeat(values, self._touched[m])
 
     def _symmetric_forces(self) -> None:
         for m, body in enumerate(self.bodies):
@@ -384,6 +437,7 @@ class Simulation:
             node_to_cell_weight=self._weight,
             boundary_conditions=self.boundary_conditions,
             owned_nodes=self._owned_nodes,
+            exchange=self.exchange,
             dt=dt,
             time=self.time,
             face_forces=dict(self.face_forces),
@@ -394,14 +448,11 @@ class Simulation:
 
         To be called before particles move, as ``after_boundary_conditions`` are.
         """
-        from solver.nodal_stress import project_stress
-
         body = self.bodies[m]
         if body.rigid or not self._is_active(body):
             return np.zeros((self.grid.number_of_nodes, 3, 3))
         sums = project_stress(self, body)
-        if len(self._images[0]):
-            nodes.fold_images(sums, self._touched[m], *self._images)
+        self.exchange.add(sums)()
         return (sums / self.nodal.volume[m][:, None]).reshape(-1, 3, 3)
 
     # ---- on the grid ---------------------------------------------------------------------------------------
@@ -415,7 +466,7 @@ class Simulation:
         if body.transmits_force:
             nodal.acceleration[m] = 0.0
             nodal.velocity_star[m] = nodal.velocity[m]
-        mass, *force = nodes.mass_and_load(active, fields, self._is_image)
+        mass, *force = nodes.mass_and_load(active, fields, self._uncounted)
         self._add("TotalMass", body, mass)
         self._add("SumTransmittedForce", body, np.array(force))
 
@@ -423,7 +474,8 @@ class Simulation:
         """Whether a node inside the domain would cross half a cell in the last step's dt."""
         half = 0.25 * sum(h * h for h in self.grid.spacing)
         inner = _inner_nodes(self.grid)
-        return any(nodes.fastest_node(v, inner) * dt * dt > half for v in self.nodal.velocity_star)
+        fastest = max(nodes.fastest_node(v, inner) for v in self.nodal.velocity_star)
+        return largest_number(self.exchange.communicator, fastest) * dt * dt > half
 
     def _impose_velocities(self, dt: float) -> None:
         """Conditions on v*, from which the acceleration follows anew at every node."""
@@ -471,7 +523,7 @@ class Simulation:
                 self._gathered,
                 filtered is not None,
                 particles.velocity if filtered is None else filtered,
-                self._rows,
+                self._sums_of(m).rows,
                 dt,
                 first,
                 last,
@@ -480,7 +532,7 @@ class Simulation:
 
         motion = transfer.total(self._in_chunks(body, move))
         if filtered is not None:
-            self._rows[self._active[m]] = 0.0
+            self._sums_of(m).rows[self._active[m]] = 0.0
         self._add("KineticEnergy", body, motion.kinetic_energy)
         self._add("ThermalEnergy", body, motion.thermal_energy)
         self._add("TotalMomentum", body, np.array(motion.momentum))
@@ -494,9 +546,8 @@ class Simulation:
         transfer.smooth_velocity(
             self.interpolator, self.grid.index, body.particles, self._gathered, filtered, sums
         )
-        if len(self._images[0]):
-            nodes.fold_images(*sums, *self._images)
-        nodes.divide_by_mass(self._active[m], self._rows, nodal.mass[m])
+        self.exchange.add(sums.rows)()
+        nodes.divide_by_mass(self._active[m], sums.rows, nodal.mass[m])
         return filtered
 
     def _update_stress(self, body: Body, cells: Array, dt: float) -> float:
@@ -531,8 +582,8 @@ class Simulation:
             )
 
         stressed = stress.total(self._in_chunks(body, update))
-        if not stressed.finite:
-            raise DivergedError(
+        if not stressed.finite and not self._fault:
+            self._fault = (
                 f"material {body.index} ({body.name}) has a stress or position that is not a finite number "
                 f"after step {self.step_number + 1} at time {self.time + dt:g}"
             )
@@ -547,17 +598,18 @@ class Simulation:
         return Neighbourhood(self.interpolator, self.grid.index, body.particles.position.copy(), dt)
 
     def _particle_cells(self, body: Body) -> Array:
-        """Cells of the particles at the start of the step, x fastest, where pressure is stabilized."""
+        """Cells of the particles at the start of the step, x fastest in this rank's, where pressure is stabilized."""
         if not self.flags.pressure_stabilization:
             return np.zeros(0, dtype=np.int64)
-        cell = self.grid.cell_of(body.particles.position)
-        nx, ny, _ = self.grid.cells
+        low, high = (np.array(corner) for corner in self.grid.own_cells)
+        cell = self.grid.cell_of(body.particles.position) - low
+        nx, ny, _ = high - low
         return np.asarray(cell[:, 0] + nx * (cell[:, 1] + ny * cell[:, 2]))
 
     def _average_dilatation(self, body: Body, cells: Array, dt: float) -> None:
         """The volume change of each cell as a whole, for pressure stabilization."""
-        volume = np.zeros(len(self._owned_cells))
-        reference = np.zeros(len(self._owned_cells))
+        volume = np.zeros_like(self._cell_stretch)
+        reference = np.zeros_like(self._cell_stretch)
         stress.cell_dilatation(body.particles, cells, self._kinematics, dt, volume, reference)
         np.divide(volume, reference, out=self._cell_stretch, where=reference > 0.0)
 
@@ -587,75 +639,48 @@ class Simulation:
         for name in self.flags.boundary_traction_faces:
             face = name.replace("minus", "-").replace("plus", "+")
             force, volume = np.zeros(3), 0.0
-            on_face = _face_nodes(self.grid, face)
+            chosen = np.flatnonzero(on_face(self.grid, face) & self.exchange.counted)
             for m, body in enumerate(self.bodies):
                 if not body.rigid and self._is_active(body):
-                    force -= self.nodal.internal_force[m][on_face].sum(axis=0)
-                volume += float(self.nodal.volume[m][on_face].sum())
+                    force -= self.nodal.internal_force[m][chosen].sum(axis=0)
+                volume += float(self.nodal.volume[m][chosen].sum())
             self.reductions["BndyForce_" + name, -1] = force
-            self.face_forces[name] = (float(force[0]), float(force[1]), float(force[2]))
             axis = FACES.index(face) // 2
             self.reductions["BndyContactCellArea_" + name, -1] = 2.0 * volume / self.grid.spacing[axis]
 
 
-def _periodic_images(grid: Grid) -> tuple[Array, Array]:
-    """Pairs (owner, image) of nodes that are one and the same, direction by direction."""
-    owners, images = [], []
-    index = grid.index
-    axes = [np.arange(index.first[a], index.first[a] + index.nodes[a]) for a in range(3)]
-    for axis in range(3):
-        if not grid.periodic[axis]:
-            continue
-        n = grid.cells[axis]
-        for image in (-1, n, n + 1):
-            if image < index.first[axis] or image >= index.first[axis] + index.nodes[axis]:
-                continue
-            there, here = list(axes), list(axes)
-            there[axis], here[axis] = np.array([image]), np.array([image % n])
-            images.append(grid.flat(*np.meshgrid(*there, indexing="ij")).ravel())
-            owners.append(grid.flat(*np.meshgrid(*here, indexing="ij")).ravel())
-    empty = np.zeros(0, dtype=np.int64)
-    return np.concatenate([empty, *owners]), np.concatenate([empty, *images])
-
-
-def _boxes(grid: Grid, nodes: bool) -> Iterator[tuple[slice, slice, slice]]:
-    for patch in grid.patches:
-        yield tuple(  # type: ignore[misc]  # three slices
-            slice(low, high + int(nodes and not grid.has_neighbor(patch, FACES[2 * a + 1])))
-            for a, (low, high) in enumerate(zip(patch.low, patch.high, strict=True))
-        )
-
-
 def _owned_nodes(grid: Grid) -> Array:
-    """(N,) True for the nodes that belong to a patch."""
+    """(N,) True for the nodes that belong to a patch, and for a rank's copies of them."""
     owned = np.zeros(grid.number_of_nodes, dtype=np.bool_)
     box = grid.as_box(owned)
-    for ranges in _boxes(grid, nodes=True):
-        box[tuple(slice(r.start + g, r.stop + g) for r, g in zip(ranges, grid.ghost, strict=True))] = True
+    for patch in grid.patches:
+        inside = []
+        for axis in range(3):
+            indices = grid.node_indices(axis)
+            last = patch.high[axis] - int(grid.has_neighbor(patch, FACES[2 * axis + 1]))
+            inside.append(np.flatnonzero((indices >= patch.low[axis]) & (indices <= last)))
+        box[np.ix_(*inside)] = True
     return owned
 
 
 def _inner_nodes(grid: Grid) -> Array:
     """(N,) True for the nodes strictly inside the bounding box."""
-    inner = np.zeros(grid.number_of_nodes, dtype=np.bool_)
-    box = grid.as_box(inner)
-    box[tuple(slice(g + 1, g + n) for g, n in zip(grid.ghost, grid.cells, strict=True))] = True
-    return inner
+    x, y, z = (
+        (grid.node_indices(axis) > 0) & (grid.node_indices(axis) < grid.cells[axis]) for axis in range(3)
+    )
+    return np.asarray(z[:, None, None] & y[:, None] & x).ravel()
 
 
 def _owned_cells(grid: Grid) -> Array:
-    """True for the cells that belong to a patch, x fastest."""
+    """True for the cells that belong to a patch, x fastest; takes no memory where all do."""
     nx, ny, nz = grid.cells
+    if (
+        sum(math.prod(b - a for a, b in zip(p.low, p.high, strict=True)) for p in grid.patches)
+        == nx * ny * nz
+    ):
+        return np.broadcast_to(np.array([True]), nx * ny * nz)
     owned = np.zeros((nz, ny, nx), dtype=np.bool_)
-    for x, y, z in _boxes(grid, nodes=False):
+    for patch in grid.patches:
+        x, y, z = (slice(a, b) for a, b in zip(patch.low, patch.high, strict=True))
         owned[z, y, x] = True
     return owned.ravel()
-
-
-def _face_nodes(grid: Grid, face: str) -> Array:
-    """The nodes of a face of the bounding box, extra nodes left out."""
-    axis = FACES.index(face) // 2
-    ranges: list[Any] = [np.arange(n + 1) for n in grid.cells]
-    ranges[axis] = np.array([grid.cells[axis] if face.endswith("+") else 0])
-    i, j, k = np.array(list(itertools.product(*ranges))).T
-    return np.asarray(grid.flat(i, j, k))

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from solver.contact.law import ContactLaw
 from solver.creation import Creation, ParticleIds, create_particles
 from solver.declare import IntVector, Vector
+from solver.domains.communicator import Alone, Communicator, largest_number
+from solver.domains.decomposition import Domain, cut, foreseen_work, patch_planes
+from solver.domains.exchange import Exchange, ManyRanks, OneRank
 from solver.flags import Flags
-from solver.grid import Grid, Patch
+from solver.grid import Grid, Patch, Window
 from solver.interpolation import INTERPOLATOR
 from solver.loads.loads import Loads
 from solver.materials.constitutive import initialize, state_record
@@ -35,8 +39,14 @@ class ProblemError(Exception):
         self.code, self.message, self.at, self.suggestion = code, message, at, suggestion
 
 
-def build(deck: Deck) -> Any:
-    """Make the simulation that a deck describes.
+def build(deck: Deck, communicator: Communicator | None = None, domains: Sequence[Domain] = ()) -> Any:
+    """Make the simulation that a deck describes, or the part of it that is one rank's.
+
+    Parameters
+    ----------
+    deck : as ``read_deck`` returns it.
+    communicator : the ranks that run it together, each of which has to call this.
+    domains : the cells of each rank; by default they are chosen.
 
     Returns
     -------
@@ -49,7 +59,7 @@ def build(deck: Deck) -> Any:
         with every diagnostic, where the deck has errors or its parts do not fit together.
     """
     specification = deck.require()
-    builder = _Builder(deck, specification)
+    builder = _Builder(deck, specification, communicator or Alone(), domains)
     try:
         return builder.simulation()
     except ProblemError as problem:
@@ -168,7 +178,15 @@ def _common(level: Level, name: str, place: Callable[[Any], Any]) -> IntVector:
 
 
 class _Builder:
-    def __init__(self, deck: Deck, specification: Specification) -> None:
+    def __init__(
+        self,
+        deck: Deck,
+        specification: Specification,
+        communicator: Communicator,
+        domains: Sequence[Domain],
+    ) -> None:
+        self.communicator = communicator
+        self.domains = tuple(domains)
         self.deck = deck
         self.spec = specification
         self.flags: Flags = specification.MPM
@@ -180,7 +198,8 @@ class _Builder:
         from solver.simulation import Simulation
 
         self._refuse_unsupported()
-        grid = self._grid()
+        self._refuse_on_ranks()
+        grid = self._part(self._grid())
         interpolator = self._interpolator(grid)
         contact: tuple[ContactLaw, ...] = self.spec.MaterialProperties.MPM.contact
         materials = self.spec.materials
@@ -191,6 +210,8 @@ class _Builder:
         bodies = [
             self._body(i, m, c, contact) for i, (m, c) in enumerate(zip(materials, creations, strict=True))
         ]
+        exchange = self._exchange(grid, interpolator, creations, contact)
+        grid = getattr(exchange, "grid", grid)
         face_section = self.spec.Grid.BoundaryConditions
         simulation = Simulation(
             grid=grid,
@@ -207,6 +228,7 @@ class _Builder:
             contact_laws=contact,
             thermal_contact=self.spec.MaterialProperties.MPM.thermal_contact is not None,
             time=self.spec.Time.initTime,
+            exchange=exchange,
         )
         self._attach_loads(simulation, loads, creations)
         self._attach_motions(simulation)
@@ -230,6 +252,49 @@ class _Builder:
         except ValueError as problem:
             raise ProblemError(code, str(problem), self.place(record)) from None
 
+    def _together(self, code: str, record: Any, action: Callable[[], Any]) -> Any:
+        """As :meth:`_guard` on all ranks: where the action fails on one of them, it fails on all."""
+        result: Any = None
+        problem: ProblemError | None = None
+        try:
+            result = self._guard(code, record, action)
+        except ProblemError as caught:
+            problem = caught
+        messages = self.communicator.allgather(None if problem is None else (problem.code, problem.message))
+        failed = next((message for message in messages if message is not None), None)
+        if failed is not None:
+            raise problem or ProblemError(*failed, self.place(record))
+        return result
+
+    def _part(self, grid: Grid) -> Grid:
+        """The grid with the cells of this rank, where there are several."""
+        ranks = self.communicator.size
+        if ranks == 1:
+            return grid
+        if not self.domains:
+            along = patch_planes(grid) if len(grid.patches) >= ranks else None
+            objects = [o for m in self.spec.materials for o in m.geom_object]
+            self.domains = self._guard(
+                "UPS405",
+                self.spec.Grid.Level[0],
+                lambda: cut(grid, ranks, lambda boxes: foreseen_work(grid, objects, boxes), along),
+            )
+        return replace(grid, window=Window(*self.domains[self.communicator.rank], 0))
+
+    def _exchange(
+        self, grid: Grid, interpolator: Any, creations: list[Creation], contact: tuple[ContactLaw, ...]
+    ) -> Exchange:
+        """What the simulation needs of the other ranks."""
+        if self.communicator.size == 1:
+            return OneRank(grid)
+        from solver.domains.reach import reach
+
+        on_corners = self.flags.use_load_curves and self.flags.use_CBDI_boundary_condition
+        own = reach(interpolator, [c.particles for c in creations], on_corners)
+        layers = int(largest_number(self.communicator, own))
+        sees_neighbours = any(law.needs_surface for law in contact)
+        return ManyRanks(self.communicator, grid, self.domains, layers, sees_neighbours=sees_neighbours)
+
     def _refuse_unsupported(self) -> None:
         flags = self.flags
         asked = {
@@ -246,6 +311,20 @@ class _Builder:
                 element = self.place(flags)
                 at = element.get(tag) if element is not None else None
                 raise ProblemError("UPS412", f"{what} is known, and not run by this program", at or element)
+
+    def _refuse_on_ranks(self) -> None:
+        """Refuse what runs on one rank only."""
+        asked = {
+            "cohesive zones": self.flags.use_cohesive_zones,
+            "scalar diffusion": self.flags.scalar_diffusion,
+            "failed particles that become another material": bool(self.spec.conversions),
+        }
+        for what, wanted in asked.items():
+            if wanted and self.communicator.size > 1:
+                at = self.place(self.flags)
+                raise ProblemError(
+                    "UPS412", f"{what}: this runs on one rank only", at, "run it without mpirun"
+                )
 
     def _grid(self) -> Grid:
         levels = self.spec.Grid.Level
@@ -311,9 +390,10 @@ class _Builder:
     ) -> list[Creation]:
         ids = ParticleIds(grid)
         find_surface = loads is not None or any(law.needs_surface for law in contact)
-        creations = []
+        creations: list[Creation] = []
+        counts: list[int] = []
         for section in self.spec.materials:
-            creation = self._guard(
+            creation = self._together(
                 "UPS403",
                 section,
                 lambda section=section: create_particles(  # type: ignore[misc]
@@ -327,11 +407,12 @@ class _Builder:
                 ),
             )
             creations.append(creation)
-            if not section.waits and len(creation.particles) == 0:
+            counts.append(sum(self.communicator.allgather(len(creation.particles))))
+            if not section.waits and counts[-1] == 0:
                 self.diagnostics.warning(
                     "UPS411", "no particle lies in the shapes of this material", self.place(section)
                 )
-        if not any(len(c.particles) for c in creations):
+        if not any(counts):
             at = self.place(self.spec.MaterialProperties.MPM)
             raise ProblemError(
                 "UPS411", "the deck has no particles: no shape covers a lattice point of the grid", at
@@ -388,7 +469,7 @@ class _Builder:
     def _attach_loads(self, simulation: Any, loads: Loads | None, creations: list[Creation]) -> None:
         if loads is None:
             return
-        self._guard("UPS403", self.spec.PhysicalBC.MPM, lambda: loads.prepare(creations))
+        self._guard("UPS403", self.spec.PhysicalBC.MPM, lambda: loads.prepare(creations, self.communicator))
         for notice in loads.notices:
             self.diagnostics.warning("UPS411", notice.message, self.place(notice.load))
 
@@ -399,7 +480,7 @@ class _Builder:
         simulation.before_step.append(apply)
         if self.flags.use_CBDI_boundary_condition:
             simulation.spread_corner_loads = lambda body, force: loads.scatter_corner_forces(
-                body.index, body.particles, force
+                body.index, body.particles, simulation.grid, force
             )
 
     def _attach_motions(self, simulation: Any) -> None:
@@ -416,9 +497,8 @@ class _Builder:
                     open_file(flags.prescribed_deformation_file), flags.exact_deformation
                 ),
             )
-            nodes = simulation.grid.node_positions()
             simulation.after_boundary_conditions.append(
-                lambda sim, dt: motion.impose(sim.nodal, nodes, sim.time, dt)
+                lambda sim, dt: motion.impose(sim.nodal, sim.node_positions, sim.time, dt)
             )
             if flags.exact_deformation:
                 simulation.time_step_limits.append(motion.time_step)

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solver.grid import Grid
-from ups.archive import ArchiveWriter, Box, ReductionFormat, Variable
-from ups.archive import Grid as ArchiveGrid
+from ups.archive import ArchiveWriter, ReductionFormat, Variable
 from ups.archive.variables import GLOBAL_MATERIAL, NODE
 from ups.deck import DataArchiver, Save, Specification
 from ups.diagnostics import Diagnostics, suggestion_for
 from ups.element import Element
+from ups.gathering import Gathering
 from ups.labels import KNOWN_LABELS
+from ups.patches import grid_of
 from ups.quantities import (
     ACCUMULATED,
     IDENTITY,
@@ -202,18 +202,6 @@ class _Planner:
         return heads | {label: q for label, q in self.fields.items() if label not in heads}
 
 
-def archive_grid(grid: Grid) -> ArchiveGrid:
-    """The grid as an archive describes it."""
-    px, py, pz = (bool(p) for p in grid.periodic)
-    return ArchiveGrid.single_level(
-        [Box(patch.low, patch.high) for patch in grid.patches],
-        spacing=grid.spacing,
-        anchor=grid.anchor,
-        extra_cells=grid.extra_cells,
-        periodic=(px, py, pz),
-    )
-
-
 def reduction_format(section: DataArchiver) -> ReductionFormat:
     """How the histories are written; an ``onTimeStep`` that never comes becomes the first, as in Uintah."""
     on = section.onTimeStep
@@ -226,9 +214,16 @@ class TimestepOutput(Observer):
     """Writes the variables on particles and nodes when they are due."""
 
     def __init__(
-        self, writer: ArchiveWriter, plan: Plan, schedule: Schedule, *, at_start: bool = False
+        self,
+        writer: ArchiveWriter,
+        plan: Plan,
+        schedule: Schedule,
+        *,
+        at_start: bool = False,
+        gathering: Gathering | None = None,
     ) -> None:
         self.schedule = schedule
+        self._gathering = gathering or Gathering()
         self._writer = writer
         self._plan = plan
         self._at_start = at_start
@@ -268,7 +263,9 @@ class TimestepOutput(Observer):
             for q in self._plan.fields
             if q.initially or not initial
         }
-        self._writer.write_timestep(simulation.step_number, simulation.time, run.dt, fields)
+        self._writer.use_grid(grid_of(simulation, self._gathering.ranks_a_file))
+        gathered = self._gathering.fields(simulation, fields)
+        self._writer.write_timestep(simulation.step_number, simulation.time, run.dt, gathered)
         self.schedule.done(simulation.time, simulation.step_number, run.wall_time)
 
 

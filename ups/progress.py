@@ -107,17 +107,18 @@ def done_share(run: Run) -> float:
 def describe(run: Run) -> str:
     """One line that says what is run."""
     simulation, control = run.simulation, run.control
-    particles = sum(len(body.particles) for body in simulation.bodies)
     count = len(simulation.bodies)
     what = f"{count} material{'s' * (count > 1)} ({', '.join(run.materials)})"
     cells = " x ".join(str(n) for n in simulation.grid.cells)
     patches = len(simulation.grid.patches)
+    ranks = simulation.exchange.communicator.size
+    on_ranks = f" on {ranks} ranks" if ranks > 1 else ""
     steps = _steps_foreseen(run)
     ahead = f"about {steps} steps" if steps > 1 else "1 step"
     start = f"going on from step {simulation.step_number}" if simulation.step_number else "first"
     return (
-        f"{run.title or 'run'}: {what}, {particles} particles, "
-        f"{cells} cells, {patches} patch{'es' * (patches > 1)}; {start} dt {run.next_dt:.4g}, {ahead} "
+        f"{run.title or 'run'}: {what}, {run.particles} particles, "
+        f"{cells} cells, {patches} patch{'es' * (patches > 1)}{on_ranks}; {start} dt {run.next_dt:.4g}, {ahead} "
         f"to time {control.maxTime:g}"
     )
 
@@ -169,7 +170,8 @@ class Interrupts(Observer):
             self.received = number
             run.stop("interrupted")
             self._release()
-            print("finishing the step, then writing a checkpoint ...", file=self._stream, flush=True)
+            if run.simulation.exchange.communicator.rank == 0:
+                print("finishing the step, then writing a checkpoint ...", file=self._stream, flush=True)
 
         for number in (signal.SIGINT, signal.SIGTERM):
             self._before[number] = signal.signal(number, handle)

@@ -20,9 +20,9 @@ from ups.archive import Variable
 from ups.archive.variables import GLOBAL_MATERIAL, NODE, PARTICLE, REDUCTION
 from ups.deck import Specification
 from ups.labels import CONCENTRATIONS, TOTAL_CONCENTRATION
+from ups.patches import stored_nodes
 
 if TYPE_CHECKING:
-    from solver.grid import Grid
     from solver.nodal_stress import NodalStress
     from solver.simulation import Simulation
 
@@ -214,15 +214,15 @@ def _of_nodes(field: str, mean: Callable[[Any, Array], Array] | None) -> Callabl
     def values(simulation: Simulation, m: int) -> Array:
         nodal = getattr(simulation.nodal, field)
         if mean is not None and m >= len(simulation.bodies):
-            return on_lattice(simulation.grid, mean(simulation.nodal, nodal))
-        return on_lattice(simulation.grid, nodal[m])
+            return on_lattice(simulation, mean(simulation.nodal, nodal))
+        return on_lattice(simulation, nodal[m])
 
     return values
 
 
 def _of_diffusion(field: str) -> Callable[[Simulation, int], Array]:
     def values(simulation: Simulation, m: int) -> Array:
-        return on_lattice(simulation.grid, getattr(simulation.diffusion.nodal, field)[m])
+        return on_lattice(simulation, getattr(simulation.diffusion.nodal, field)[m])
 
     return values
 
@@ -230,14 +230,14 @@ def _of_diffusion(field: str) -> Callable[[Simulation, int], Array]:
 def _stress_at_nodes(stress: StressHolder) -> Callable[[Simulation, int], Array]:
     def values(simulation: Simulation, m: int) -> Array:
         if m < len(simulation.bodies):
-            return on_lattice(simulation.grid, stress.values[m])
-        return on_lattice(simulation.grid, _weighted(simulation.nodal.volume, stress.values))
+            return on_lattice(simulation, stress.values[m])
+        return on_lattice(simulation, _weighted(simulation.nodal.volume, stress.values))
 
     return values
 
 
 def _node_to_cell_weight(simulation: Simulation, m: int) -> Array:
-    return on_lattice(simulation.grid, simulation.boundary_conditions.node_to_cell_weight())
+    return on_lattice(simulation, simulation.boundary_conditions.node_to_cell_weight())
 
 
 def _total(nodal: Any, field: Array) -> Array:
@@ -263,18 +263,14 @@ _MEANS: dict[str, Callable[[Any, Array], Array]] = {
 """How the nodal fields of all materials together follow from those of each."""
 
 
-def on_lattice(grid: Grid, nodal: Array) -> Array:
+def on_lattice(simulation: Simulation, nodal: Array) -> Array:
     """The nodes that an archive stores, of a field (N, ...) over all stored nodes: a view [x, y, z, ...].
 
-    Those are the nodes of the domain and its extra cells; where it is periodic, the last node is the first.
+    Those are the nodes of the domain and its extra cells; where it is periodic, the last node is the first. A
+    rank of several has those of its patches.
     """
-    box, ranges = grid.as_box(nodal), []
-    for axis in range(3):
-        first = -grid.index.first[axis]
-        low = first - grid.extra_cells[axis]
-        high = first + grid.cells[axis] + (0 if grid.periodic[axis] else 1 + grid.extra_cells[axis])
-        ranges.append(slice(low, high))
-    return np.asarray(box[tuple(ranges)])
+    box = stored_nodes(simulation).within(simulation.grid.index.first)
+    return np.asarray(simulation.grid.as_box(nodal)[box])
 
 
 def sums(specification: Specification) -> dict[str, Sum]:

@@ -7,17 +7,22 @@ beside it, where other programs do not look.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.domains.communicator import Communicator
+from solver.domains.decomposition import Domain
+from solver.grid import Grid
 from solver.particles import new_arrays, state_variables
-from ups.archive import Archive, ArchiveError, ArchiveWriter, Variable
+from ups.archive import Archive, ArchiveError, ArchiveWriter, Patch, Variable
 from ups.archive.variables import GLOBAL_MATERIAL, PARTICLE, REDUCTION
-from ups.output import HistoryOutput, TimestepOutput, archive_grid
+from ups.gathering import Gathering
+from ups.output import HistoryOutput, TimestepOutput
+from ups.patches import grid_of
 from ups.run import Observer, Run
 from ups.schedule import Schedule
 
@@ -98,17 +103,28 @@ def _materials(simulation: Simulation) -> int:
     return len(simulation.bodies) + len(simulation.cohesive_zones)
 
 
-def write_checkpoint(writer: ArchiveWriter, run: Run, state: RunState, cycle: int) -> None:
+def write_checkpoint(
+    writer: ArchiveWriter, run: Run, state: RunState, cycle: int, gathering: Gathering
+) -> None:
     """Store a checkpoint of the present state and remove the oldest beyond ``cycle`` (0 keeps all)."""
     simulation = run.simulation
-    fields: dict[Variable, dict[int, Array]] = {}
-    others = _simulation_state(simulation) | _run_state_arrays(state)
+    own_fields: dict[Variable, dict[int, Array]] = {}
+    own_others: dict[str, Array] = {}
     for stored in _stored_arrays(simulation):
         array = getattr(simulation.records(stored.material)[stored.record], stored.name)
         if stored.variable is None:
-            others[stored.key] = array
+            own_others[stored.key] = array
         else:
-            fields.setdefault(stored.variable, {})[stored.material] = array
+            own_fields.setdefault(stored.variable, {})[stored.material] = array
+    fields = gathering.fields(simulation, own_fields)
+    others: dict[str, Any] = gathering.arrays(simulation, own_others)
+    grid = grid_of(simulation, gathering.ranks_a_file)
+    positions = next(by_material for variable, by_material in fields.items() if variable.name == "p.x")
+    for material, position in positions.items():
+        owners = grid.levels[0].nearest_patch(np.asarray(position))
+        others[f"order/{material}"] = np.argsort(owners, kind="stable")
+    others |= _simulation_state(simulation) | _run_state_arrays(state)
+    writer.use_grid(grid)
     writer.write_checkpoint(
         state.step,
         state.time,
@@ -135,11 +151,7 @@ def _run_state_arrays(state: RunState) -> dict[str, Any]:
 
 def _simulation_state(simulation: Simulation) -> dict[str, Any]:
     """What the simulation keeps beside the arrays of its particles."""
-    found: dict[str, Any] = {}
-    level = archive_grid(simulation.grid).levels[0]
-    for material in range(_materials(simulation)):
-        owners = level.nearest_patch(simulation.records(material)[0].position)
-        found[f"order/{material}"] = np.argsort(owners, kind="stable")
+    found: dict[str, Any] = {"domains": np.array(simulation.exchange.domains, np.int64).reshape(-1, 2, 3)}
     for face, force in simulation.face_forces.items():
         found[f"face_force/{face}"] = np.array(force)
     for number, law in enumerate(simulation.contact_laws):
@@ -191,25 +203,67 @@ def _due(pair: Array) -> tuple[float, int]:
 def _restore_particles(
     simulation: Simulation, checkpoints: Archive, step: int, state: dict[str, Array]
 ) -> None:
-    arrays: dict[tuple[int, int], dict[str, Array]] = {}
-    for stored in list(_stored_arrays(simulation)):
-        order = state[f"order/{stored.material}"]
-        if stored.variable is None:
-            array = state[stored.key]
-        else:
-            by_patch = checkpoints.particles(step, stored.variable.name, stored.material)
-            array = np.empty_like(by_patch, dtype=by_patch.dtype.newbyteorder("="))
-            array[order] = by_patch
-        arrays.setdefault((stored.material, stored.record), {})[stored.name] = np.ascontiguousarray(array)
-    for material in range(_materials(simulation)):
-        count = len(state[f"order/{material}"])
-        simulation.replace_records(
-            material,
-            tuple(
-                _filled(type(record), count, arrays.get((material, number), {}))
-                for number, record in enumerate(simulation.records(material))
-            ),
-        )
+    low, high = (np.array(corner) for corner in simulation.grid.own_cells)
+    arrays: dict[_Stored, list[Array]] = {stored: [] for stored in _stored_arrays(simulation)}
+    counts = dict.fromkeys(range(_materials(simulation)), 0)
+    for rank, patches in _patches_by_rank(checkpoints, step).items():
+        if not any((np.maximum(p.low, low) < np.minimum(p.high, high)).all() for p in patches):
+            continue
+        theirs = checkpoints.state(step, rank) if rank else state
+        chosen = {}
+        for material in counts:
+            position = _in_order(checkpoints, step, material, patches, theirs[f"order/{material}"], "p.x")
+            cells = simulation.grid.cell_of(position)
+            chosen[material] = np.flatnonzero(_nearest_inside(simulation.grid, cells, low, high))
+            counts[material] += len(chosen[material])
+        for stored, parts in arrays.items():
+            if stored.variable is None:
+                array = theirs[stored.key]
+            else:
+                order = theirs[f"order/{stored.material}"]
+                array = _in_order(checkpoints, step, stored.material, patches, order, stored.variable.name)
+            parts.append(array[chosen[stored.material]])
+    for material, count in counts.items():
+        records = []
+        for number, record in enumerate(simulation.records(material)):
+            own = {s.name: a for s, a in arrays.items() if (s.material, s.record) == (material, number)}
+            mine = {name: np.concatenate(parts) for name, parts in own.items() if parts}
+            records.append(_filled(type(record), count, mine))
+        simulation.replace_records(material, tuple(records))
+
+
+def _in_order(
+    checkpoints: Archive, step: int, material: int, patches: Sequence[Patch], order: Array, label: str
+) -> Array:
+    """A variable of the particles in some patches, in the order in which the rank of the patches had them."""
+    parts = [checkpoints.particles(step, label, material, patch.id) for patch in patches]
+    by_patch = np.concatenate(parts)
+    array = np.empty_like(by_patch, dtype=by_patch.dtype.newbyteorder("="))
+    array[order] = by_patch
+    return array
+
+
+def _nearest_inside(grid: Grid, cells: Array, low: Array, high: Array) -> Array:
+    """Whether cells (n, 3), or those of the domain next to them, lie in low <= c < high."""
+    nearest = np.clip(cells, 0, np.array(grid.cells) - 1)
+    return np.asarray(((nearest >= low) & (nearest < high)).all(axis=1))
+
+
+def _patches_by_rank(checkpoints: Archive, step: int) -> dict[int, list[Patch]]:
+    """The patches that each rank wrote, by ascending number."""
+    found: dict[int, list[Patch]] = {}
+    for patch in checkpoints.grid(step).levels[0].patches:
+        found.setdefault(patch.proc, []).append(patch)
+    return found
+
+
+def domains_of(checkpoints: Archive, step: int, communicator: Communicator) -> tuple[Domain, ...]:
+    """The domains that as many ranks had when they wrote a checkpoint; none where there were fewer or more."""
+    stored = checkpoints.state(step).get("domains", np.zeros((0, 2, 3), np.int64))
+    if communicator.size == 1 or len(stored) != communicator.size:
+        return ()
+    corners = [tuple(tuple(corner) for corner in pair) for pair in stored.tolist()]
+    return tuple(Domain(*pair) for pair in corners)
 
 
 def _filled(record: type, count: int, arrays: dict[str, Array]) -> Any:
@@ -229,7 +283,8 @@ def _restore_laws(simulation: Simulation, state: dict[str, Array]) -> None:
             law.condition_met_at = float(value)
     loads = getattr(simulation, "loads", None)
     if loads is not None:
-        loads.resume([body.particles for body in simulation.bodies], dict(state["load_counts"].tolist()))
+        materials = [body.particles for body in simulation.bodies]
+        loads.resume(materials, dict(state["load_counts"].tolist()), simulation.exchange.communicator)
 
 
 class CheckpointOutput(Observer):
@@ -247,7 +302,9 @@ class CheckpointOutput(Observer):
         cycle: int,
         output: TimestepOutput,
         histories: HistoryOutput,
+        gathering: Gathering | None = None,
     ) -> None:
+        self._gathering = gathering or Gathering()
         self.schedule = schedule
         self.last_step: int | None = None
         self._writer = writer
@@ -294,5 +351,5 @@ class CheckpointOutput(Observer):
             next_output=(outputs.next_time, outputs.next_step),
             next_checkpoint=(mine.next_time, mine.next_step),
         )
-        write_checkpoint(self._writer, run, state, self._cycle)
+        write_checkpoint(self._writer, run, state, self._cycle, self._gathering)
         self.last_step = simulation.step_number

@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from solver.time_control import TimeControl
 
 if TYPE_CHECKING:
@@ -57,6 +59,7 @@ class Run:
     title : title of the deck.
     materials : what the materials are, each in a word or two.
     directory : the archive that is written.
+    particles : how many there are at the start, on all ranks.
     """
 
     simulation: Simulation
@@ -71,16 +74,20 @@ class Run:
     title: str = ""
     materials: Sequence[str] = ()
     directory: Path | None = None
+    particles: int = 0
     first_step: int = field(init=False)
     _started: float = field(default_factory=time.perf_counter)
+    _asked_to_stop: str = ""
+    _agreed_time: float = 0.0
 
     def __post_init__(self) -> None:
         self.first_step = self.simulation.step_number
+        self._ranks = self.simulation.exchange.communicator
 
     @property
     def wall_time(self) -> float:
-        """Seconds since the run was made."""
-        return time.perf_counter() - self._started
+        """Seconds since the run was made; of several ranks, those on which they agreed after the last step."""
+        return time.perf_counter() - self._started if self._ranks.size == 1 else self._agreed_time
 
     @property
     def steps_done(self) -> int:
@@ -88,8 +95,20 @@ class Run:
         return self.simulation.step_number - self.first_step
 
     def stop(self, reason: str) -> None:
-        """Ask the run to end after the present step."""
-        self.stop_reason = self.stop_reason or reason
+        """Ask the run to end after the present step, or after the next where other ranks have to hear of it."""
+        self._asked_to_stop = self._asked_to_stop or reason
+        if self._ranks.size == 1:
+            self.stop_reason = self._asked_to_stop
+
+    def _agree(self) -> None:
+        """Let all ranks know the time, and whether one of them was asked to stop: they all do the same then."""
+        if self._ranks.size == 1:
+            return
+        own = [time.perf_counter() - self._started, bool(self._asked_to_stop)]
+        self._agreed_time, asked = self._ranks.largest(np.array(own)).tolist()
+        if asked and not self.stop_reason:
+            reasons = self._ranks.allgather(self._asked_to_stop)
+            self.stop_reason = next(reason for reason in reasons if reason)
 
     def go(self) -> None:
         """Make steps until the deck or somebody else says that it is enough.
@@ -103,6 +122,7 @@ class Run:
         ups.archive.ArchiveError
             when an observer cannot write.
         """
+        self._agree()
         if self.next_dt == 0.0:
             self._find_next_dt(self.simulation.initial_time_step())
         self.is_last = not self._goes_on(self.simulation.time, self.simulation.step_number, self.wall_time)
@@ -124,6 +144,7 @@ class Run:
         self._find_next_dt(stable)
         for observer in self.observers:
             observer.after_step(self)
+        self._agree()
 
     def _advance(self, dt: float) -> tuple[float, float]:
         """Make a step, of a tenth of dt as often as nodes are too fast; its size, and the stable next."""

@@ -7,20 +7,23 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+from solver.domains.communicator import Alone, Communicator
+from solver.domains.decomposition import Domain
 from ups.archive import Archive, ArchiveError, ArchiveWriter, next_numbered_directory
 from ups.deck import Deck, Specification, read_deck
 from ups.diagnostics import DeckError, Diagnostics
+from ups.gathering import Gathering
 from ups.output import (
     HistoryOutput,
     Plan,
     TimestepOutput,
-    archive_grid,
     plan_output,
     reduction_format,
 )
-from ups.restart import CheckpointOutput, RunState, restore
+from ups.patches import grid_of
+from ups.restart import CheckpointOutput, RunState, domains_of, restore
 from ups.result import Result
 from ups.run import Observer, Run, StepError
 from ups.schedule import Schedule
@@ -28,6 +31,7 @@ from ups.schedule import Schedule
 if TYPE_CHECKING:
     from solver.simulation import Simulation
 
+Answer = TypeVar("Answer")
 Checked = Callable[[Deck], None]
 
 
@@ -37,8 +41,10 @@ def run_deck(
     output: str | os.PathLike[str] | None = None,
     max_steps: int | None = None,
     threads: int | None = None,
+    ranks_a_file: int = 1,
     observers: Iterable[Observer] = (),
     checked: Checked | None = None,
+    communicator: Communicator | None = None,
 ) -> Result:
     """Run a deck and write its archive.
 
@@ -48,9 +54,12 @@ def run_deck(
     output : the archive, which must not exist or be an empty folder; by default ``<filebase>`` numbered as
         Uintah does, ``name.000``, with a link ``name`` to the newest.
     max_steps : the number of the step after which to stop, or None for what the deck says.
-    threads : how many threads share the work, by default one for each core; results do not depend on it.
+    threads : how many threads share the work, by default one for each core (that no other
+        rank uses); results do not depend on it.
+    ranks_a_file : how many ranks put their data into one file of a time step.
     observers : who else watches the run (see ``ups.run.Observer``).
     checked : called once the deck is known to be good, before anything is written.
+    communicator : the ranks that share the run, each of which has to call this; by default there is one.
 
     Raises
     ------
@@ -59,15 +68,17 @@ def run_deck(
         written until then stays readable.
     """
     specification, plan = _plan(deck)
+    ranks = communicator or Alone()
     with _problems(deck):
-        directory, link = _place(specification, output)
-        simulation = _build(deck, threads)
+        directory, link = _on_first(ranks, lambda: _place(specification, output))
+        simulation = _build(deck, threads, ranks)
+        simulation.balance()
         if checked is not None:
             checked(deck)
         section = specification.DataArchiver
         writer = ArchiveWriter.create(
             directory,
-            archive_grid(simulation.grid),
+            grid_of(simulation, ranks_a_file),
             input_xml=deck.document.to_xml(),
             originals=_originals(deck),
             title=specification.Meta.title,
@@ -75,8 +86,9 @@ def run_deck(
             double_as_float=section.outputDoubleAsFloat,
             link=link,
             reduction_format=reduction_format(section),
+            ranks=ranks,
         )
-        return _go(deck, writer, plan, simulation, None, max_steps, observers)
+        return _go(deck, writer, plan, simulation, None, max_steps, observers, Gathering(ranks_a_file))
 
 
 def resume_run(
@@ -86,9 +98,11 @@ def resume_run(
     output: str | os.PathLike[str] | None = None,
     max_steps: int | None = None,
     threads: int | None = None,
+    ranks_a_file: int = 1,
     overrides: Sequence[tuple[str, str]] = (),
     observers: Iterable[Observer] = (),
     checked: Checked | None = None,
+    communicator: Communicator | None = None,
 ) -> Result:
     """Go on with the run of an archive from one of its checkpoints.
 
@@ -97,7 +111,8 @@ def resume_run(
     archive : the archive; its ``input.xml`` is the deck.
     step : the step of the checkpoint, by default the last.
     output : a new archive; by default the old one is continued, and what it holds of later steps is removed.
-    max_steps, threads, observers, checked : as for :func:`run_deck`; steps count from the start of the first run.
+    max_steps, threads, ranks_a_file, observers, checked, communicator : as for :func:`run_deck`; steps count from
+        the start of the first run.
     overrides : (path of tags, new text) pairs, as for ``read_deck``.
 
     Raises
@@ -110,11 +125,17 @@ def resume_run(
         checkpoints, found = _checkpoint(source, step)
     deck = read_deck(source.path / "input.xml", overrides=overrides)
     specification, plan = _plan(deck)
+    ranks = communicator or Alone()
     with _problems(deck):
-        directory = source.path if output is None else _place(specification, output)[0]
-        simulation = _build(deck, threads)
+        directory = _on_first(
+            ranks, lambda: source.path if output is None else _place(specification, output)[0]
+        )
+        domains = domains_of(checkpoints, found, ranks)
+        simulation = _build(deck, threads, ranks, domains)
         with _problems(None):
             state = restore(simulation, checkpoints, found)
+        if not domains:
+            simulation.balance()
         if checked is not None:
             checked(deck)
         section = specification.DataArchiver
@@ -122,10 +143,11 @@ def resume_run(
             "compression": section.compression.replace("none", ""),
             "double_as_float": section.outputDoubleAsFloat,
             "reduction_format": reduction_format(section),
+            "ranks": ranks,
         }
-        grid = archive_grid(simulation.grid)
+        grid = grid_of(simulation, ranks_a_file)
         if output is None:
-            if overrides:
+            if overrides and ranks.rank == 0:
                 _replace_deck(directory, deck)
             writer = ArchiveWriter.open_existing(directory, grid, step=state.step, time=state.time, **options)
         else:
@@ -138,7 +160,7 @@ def resume_run(
                 restarted_from=(source.path.name, state.step),
                 **options,
             )
-        return _go(deck, writer, plan, simulation, state, max_steps, observers)
+        return _go(deck, writer, plan, simulation, state, max_steps, observers, Gathering(ranks_a_file))
 
 
 def _plan(deck: Deck) -> tuple[Specification, Plan]:
@@ -152,13 +174,30 @@ def _plan(deck: Deck) -> tuple[Specification, Plan]:
     return deck.require(), plan
 
 
-def _build(deck: Deck, threads: int | None) -> Simulation:
+def _build(
+    deck: Deck, threads: int | None, ranks: Communicator, domains: Sequence[Domain] = ()
+) -> Simulation:
     from solver.team import Team, available_cores
     from ups.factory import build
 
-    simulation: Simulation = build(deck)
-    simulation.team = Team(threads or available_cores())
+    simulation: Simulation = build(deck, ranks, domains)
+    simulation.team = Team(threads or max(1, available_cores() // ranks.sharing_cores))
     return simulation
+
+
+def _on_first(ranks: Communicator, action: Callable[[], Answer]) -> Answer:
+    """What an action gives on the first rank, on all of them; what it raises, all raise."""
+    answer: tuple[Answer | None, tuple[Path, str, str] | None] = (None, None)
+    if ranks.rank == 0:
+        try:
+            answer = (action(), None)
+        except ArchiveError as problem:
+            answer = (None, (problem.path, problem.message, problem.advice))
+    given, failure = ranks.from_root(answer)
+    if failure is not None:
+        path, message, advice = failure
+        raise ArchiveError(path, message, advice=advice)
+    return given  # type: ignore[return-value]  # None only if that is what the action gives
 
 
 def _go(
@@ -169,6 +208,7 @@ def _go(
     state: RunState | None,
     max_steps: int | None,
     watchers: Iterable[Observer],
+    gathering: Gathering,
 ) -> Result:
     """Put the run together, start it, and say how it ended."""
     specification = deck.require()
@@ -176,12 +216,19 @@ def _go(
     if max_steps is not None:
         limit = min(max_steps, control.max_Timesteps) if control.max_Timesteps else max_steps
         control = replace(control, max_Timesteps=limit)
-    output = TimestepOutput(writer, plan, Schedule.of_output(section), at_start=section.outputInitTimestep)
+    output = TimestepOutput(
+        writer,
+        plan,
+        Schedule.of_output(section),
+        at_start=section.outputInitTimestep,
+        gathering=gathering,
+    )
     histories = HistoryOutput(writer, plan, at_start=section.outputInitTimestep)
     cycle = section.checkpoint.cycle if section.checkpoint else 0
     checkpoints = CheckpointOutput(
-        writer, Schedule.of_checkpoints(section.checkpoint), cycle, output, histories
+        writer, Schedule.of_checkpoints(section.checkpoint), cycle, output, histories, gathering
     )
+    communicator = simulation.exchange.communicator
     observers: Sequence[Observer] = (output, histories, checkpoints, *watchers)
     run = Run(
         simulation,
@@ -190,6 +237,7 @@ def _go(
         title=specification.Meta.title,
         materials=_material_names(deck),
         directory=writer.directory,
+        particles=sum(communicator.allgather(sum(len(body.particles) for body in simulation.bodies))),
     )
     if state is not None:
         run.dt, run.next_dt = state.dt, control.override_restart_delt or state.next_dt

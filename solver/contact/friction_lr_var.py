@@ -66,6 +66,7 @@ class FrictionLRVar(LogisticRegressionFriction):
         particles = scene.particles[self.master_material]
         shapes = particle_shapes(scene, self.master_material)
         add_scalar(shapes, particles.color * particles.mass, color)
+        scene.exchange.add(color)()
         table = np.array(self.variable_friction.entry)
         return np.interp(
             color[nodes] / scene.nodal.mass[self.master_material, nodes], table[:, 0], table[:, 1]

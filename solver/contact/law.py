@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from solver.declare import IntVector, Parameter, Vector
 from solver.dispatch import inline
+from solver.domains.exchange import Exchange, OneRank
 from solver.grid import Grid
 from solver.nodal import NodalFields
 from solver.particles import Particles
@@ -62,15 +63,22 @@ class ContactScene:
     """(N,) 1/8, doubled for every symmetry face the node lies on (Uintah's NC_CCweight)."""
     boundary_conditions: BoundaryConditions
     owned_nodes: Array
-    """(N,) True where a node belongs to a patch (extra nodes and periodic images are False)."""
+    """(N,) True where a node belongs to a patch (extra nodes are False, and images where one rank has all)."""
     dt: float
     time: float
     """At the start of the step."""
+    exchange: Exchange = None  # type: ignore[assignment]  # made from the grid where it is not given
+    """The other ranks: what a law sums over particles has to be added up over them."""
     face_forces: Mapping[str, Vector] = field(default_factory=dict)
     """Force on each face (``xminus``, ...) in the step before, where the deck asks for boundary tractions."""
     reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
     """(label, material or -1) -> value (3,) for .dat files, e.g. RigidReactionForce; laws add to them."""
     _shared: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Without other ranks only periodic images have to be heeded."""
+        if self.exchange is None:
+            self.exchange = OneRank(self.grid)
 
     def velocity(self, part: int) -> Array:
         """The (M, N, 3) velocities that a law changes in part 1 or 2."""

@@ -13,12 +13,13 @@ import numpy as np
 
 from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactScene
-from solver.contact.particle_shapes import ParticleShapes, particle_shapes, shape_of
+from solver.contact.particle_shapes import ParticleShapes, shape_of, shapes_of
 from solver.contact.vectors import dot, length, over, plus, put_vector, times, vector_at
 from solver.declare import Vector
 from solver.dispatch import inline
 from solver.interpolation.shape import MOST_NODES, particle_domain
 from solver.nodal import EMPTY_MASS
+from solver.particles import Particles
 from solver.tensor import tensor_at
 
 NO_ALPHA = -1
@@ -65,7 +66,8 @@ class Neighbours(NamedTuple):
 def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
     """Alpha materials, normals and prominences of a scene; use it with ``scene.once``."""
     alpha = alpha_materials(scene)
-    shapes = [particle_shapes(scene, m) for m in range(len(scene.particles))]
+    bodies = [_with_neighbours(scene, particles) for particles in scene.particles]
+    shapes = [shapes_of(scene, body) for body in bodies]
     counts = np.zeros(scene.nodal.mass.shape, np.int64)
     near = [count_neighbours(shape, alpha, counts[m]) for m, shape in enumerate(shapes)]
     alpha[np.count_nonzero(counts, axis=0) < 2] = NO_ALPHA
@@ -79,9 +81,36 @@ def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
 
     surfaces = TouchingSurfaces(alpha, normal, np.full(counts.shape, -np.inf))
     for m, shape in enumerate(shapes):
-        prominent = near[m] & (scene.particles[m].surface > ON_SURFACE)
+        prominent = near[m] & (bodies[m].surface > ON_SURFACE)
         reach(shape, np.flatnonzero(prominent), scene.grid.spacing, m, surfaces)
+    _share(scene, surfaces)
     return surfaces
+
+
+class _Seen(NamedTuple):
+    """What of a particle matters here."""
+
+    position: Array
+    deformation_gradient: Array
+    size: Array
+    surface: Array
+
+
+def _with_neighbours(scene: ContactScene, particles: Particles) -> _Seen:
+    """The particles of this rank and those of others that reach nodes which this one counts."""
+    own = _Seen(particles.position, particles.deformation_gradient, particles.size, particles.surface)
+    seen: _Seen = scene.exchange.with_neighbours(own)
+    return seen
+
+
+def _share(scene: ContactScene, surfaces: TouchingSurfaces) -> None:
+    """Give all copies of a node what the rank found that counts it, and so saw all particles there."""
+    alpha = surfaces.alpha.astype(float)
+    scene.exchange.share(alpha)
+    surfaces.alpha[:] = alpha
+    scene.exchange.share(surfaces.normal)
+    for prominence in surfaces.prominence:
+        scene.exchange.share(prominence)
 
 
 def alpha_materials(scene: ContactScene) -> Array:

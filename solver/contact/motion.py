@@ -281,6 +281,14 @@ def new_reactions(materials: int) -> Reactions:
     return Reactions(np.zeros((materials, 3)), np.zeros((materials, 3)), np.zeros(3))
 
 
+def counted_and_others(
+    scene: ContactScene, nodes: Array, reactions: Reactions
+) -> list[tuple[Array, Reactions]]:
+    """Nodes whose reactions count, and copies that other ranks count, each with where its reactions go."""
+    counted = scene.exchange.counted[nodes]
+    return [(nodes[counted], reactions), (nodes[~counted], new_reactions(len(reactions.force)))]
+
+
 @inline
 def add_reaction(
     reactions: Reactions,

@@ -61,6 +61,11 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
             fields.position[m],
             stress[m],
         )
+    on_their_way = [
+        scene.exchange.add(fields.normal[m], fields.position[m], stress[m]) for m in range(shape[0])
+    ]
+    for complete in on_their_way:
+        complete()
     if scene.colinear_normals:
         make_colinear(fields.normal, nodal.mass)
     for m in range(shape[0]):

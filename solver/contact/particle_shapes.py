@@ -28,7 +28,11 @@ class ParticleShapes(NamedTuple):
 
 def particle_shapes(scene: ContactScene, material: int) -> ParticleShapes:
     """The shapes of a material's particles at the start of the step."""
-    particles = scene.particles[material]
+    return shapes_of(scene, scene.particles[material])
+
+
+def shapes_of(scene: ContactScene, particles: Any) -> ParticleShapes:
+    """The shapes of some particles, given their ``position``, ``deformation_gradient`` and ``size``."""
     return ParticleShapes(
         scene.interpolation,
         scene.grid.index,

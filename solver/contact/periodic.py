@@ -22,12 +22,16 @@ class Representatives(NamedTuple):
 
 @lru_cache(maxsize=4)
 def representatives(grid: Grid) -> Representatives:
-    """Images in periodic directions stand for nodes 0 .. cells - 1, other nodes for themselves."""
+    """Images in periodic directions stand for nodes 0 .. cells - 1, other nodes for themselves.
+
+    Where a rank holds a part of the grid, every node stands for itself, since its copies are added up later.
+    """
     first, nodes, cells = grid.index.first, grid.index.nodes, grid.cells
     indices = [first[axis] + np.arange(nodes[axis]) for axis in range(3)]
     wrapped = [indices[axis] % cells[axis] if grid.periodic[axis] else indices[axis] for axis in range(3)]
     k, j, i = np.meshgrid(wrapped[2], wrapped[1], wrapped[0], indexing="ij")
-    node = np.asarray(grid.flat(i, j, k)).ravel()
+    own = np.arange(grid.number_of_nodes)
+    node = own if grid.window is not None else np.asarray(grid.flat(i, j, k)).ravel()
     shift = np.zeros((node.size, 3))
     for axis in range(3):
         steps = np.meshgrid(*(wrapped[a] - indices[a] for a in (2, 1, 0)), indexing="ij")[2 - axis]

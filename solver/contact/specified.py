@@ -15,6 +15,7 @@ from solver.contact.motion import (
     Profile,
     Reactions,
     add_reaction,
+    counted_and_others,
     new_reactions,
     report_reactions,
     rigid_velocity,
@@ -96,19 +97,21 @@ class Specified(PrescribedMotion):
             return
         self.watch_condition(scene)
         reactions = new_reactions(nodal.mass.shape[0])
-        impose_velocity_star(
-            nodal.velocity_star,
-            nodal.mass,
-            nodal.internal_force,
-            nodes[self.filled(scene, nodes)],
-            self.acted_on(scene),
-            self.master_material,
-            self.motion(scene),
-            scene.node_positions,
-            self.direction,
-            self.normals(scene),
-            reactions,
-        )
+        filled = nodes[self.filled(scene, nodes)]
+        for part_of_nodes, its_reactions in counted_and_others(scene, filled, reactions):
+            impose_velocity_star(
+                nodal.velocity_star,
+                nodal.mass,
+                nodal.internal_force,
+                part_of_nodes,
+                self.acted_on(scene),
+                self.master_material,
+                self.motion(scene),
+                scene.node_positions,
+                self.direction,
+                self.normals(scene),
+                its_reactions,
+            )
         report_reactions(scene, self.master_material, reactions)
 
     def normals(self, scene: ContactScene) -> Array:

@@ -21,6 +21,7 @@ from solver.contact.motion import (
     PrescribedMotion,
     Reactions,
     add_reaction,
+    counted_and_others,
     new_reactions,
     report_reactions,
     rigid_velocity,
@@ -48,20 +49,22 @@ class SpecifiedFriction(PrescribedMotion):
             return
         nodal = scene.nodal
         reactions = new_reactions(nodal.mass.shape[0])
-        slide_on_master(
-            scene.velocity(part),
-            nodal.mass,
-            nodal.internal_force,
-            scene.once(touching_surfaces),
-            np.flatnonzero(scene.owned_nodes),
-            self.acted_on(scene),
-            self.master_material,
-            self.ExcludeMaterial,
-            self.motion(scene),
-            scene.node_positions,
-            self.mu,
-            reactions,
-        )
+        owned = np.flatnonzero(scene.owned_nodes)
+        for nodes, its_reactions in counted_and_others(scene, owned, reactions):
+            slide_on_master(
+                scene.velocity(part),
+                nodal.mass,
+                nodal.internal_force,
+                scene.once(touching_surfaces),
+                nodes,
+                self.acted_on(scene),
+                self.master_material,
+                self.ExcludeMaterial,
+                self.motion(scene),
+                scene.node_positions,
+                self.mu,
+                its_reactions,
+            )
         if part == 2:
             report_reactions(scene, self.master_material, reactions)
 

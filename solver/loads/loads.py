@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.creation import Creation
+from solver.domains.communicator import Alone, Communicator
 from solver.geometry.piece import Array
 from solver.grid import Grid
 from solver.loads.action import Action
@@ -77,11 +78,11 @@ class Loads:
         """The number of loads."""
         return len(self._loads)
 
-    def prepare(self, creations: Sequence[Creation]) -> None:
+    def prepare(self, creations: Sequence[Creation], communicator: Communicator | None = None) -> None:
         """Write the ids of the curves that each particle carries into ``load_curve``, and count them.
 
         Where a particle file lists load curves, those stand. To be called once, for the particles of every
-        material as they were created.
+        material as they were created; with a communicator every rank calls it for its own.
 
         Raises
         ------
@@ -94,16 +95,16 @@ class Loads:
                 if load.load_curve.acts_on(material):
                     _assign(load, creation)
         materials = [creation.particles for creation in creations]
-        self.learn_normals(creations)
-        self.resume(
-            materials,
-            {c: sum(int(np.count_nonzero(p.load_curve == c)) for p in materials) for c in self.counts},
-        )
+        ranks = communicator or Alone()
+        self.learn_normals(creations, ranks)
+        counts = [sum(int(np.count_nonzero(p.load_curve == c)) for p in materials) for c in self.counts]
+        total = ranks.total(np.array(counts)).tolist()
+        self.resume(materials, dict(zip(self.counts, total, strict=True)), ranks)
         self.notices += [
             Notice(load, no_particle(load)) for load in self._loads if not self.counts[load.load_curve.id]
         ]
 
-    def learn_normals(self, creations: Sequence[Creation]) -> None:
+    def learn_normals(self, creations: Sequence[Creation], communicator: Communicator | None = None) -> None:
         """Remember the normals that particle files gave, by particle id.
 
         :meth:`prepare` does so; a run that goes on from a checkpoint has to call this itself.
@@ -123,12 +124,22 @@ class Loads:
         ids = np.concatenate([creation.particles.id for creation in creations])
         normals = np.concatenate([creation.normal for creation in creations])
         given = normals.any(axis=1)
-        self._normals = ParticleNormals(ids[given], normals[given])
+        # Particles move between ranks, so each knows the normals of all.
+        known = (communicator or Alone()).allgather((ids[given], normals[given]))
+        ids, normals = (np.concatenate(parts) for parts in zip(*known, strict=True))
+        self._normals = ParticleNormals(ids, normals)
 
-    def resume(self, materials: Sequence[Particles], counts: Mapping[int, int]) -> None:
+    def resume(
+        self,
+        materials: Sequence[Particles],
+        counts: Mapping[int, int],
+        communicator: Communicator | None = None,
+    ) -> None:
         """Go on with particles that hold their curves already, as from a checkpoint or from other materials."""
         self.counts.update(counts)
-        self._carried = [set(np.unique(particles.load_curve).tolist()) for particles in materials]
+        carried = [set(np.unique(particles.load_curve).tolist()) for particles in materials]
+        everywhere = zip(*(communicator or Alone()).allgather(carried), strict=True)
+        self._carried = [set().union(*of_material) for of_material in everywhere]
 
     def apply(self, time: float, materials: Sequence[Particles]) -> None:
         """Set ``external_force`` and ``external_heat_rate`` of the particles of all materials, for one step.
@@ -180,7 +191,9 @@ class Loads:
             if load.heats:
                 add_heat(action, particles.load_curve, particles.external_heat_rate)
 
-    def scatter_corner_forces(self, material: int, particles: Particles, nodal_force: Array) -> None:
+    def scatter_corner_forces(
+        self, material: int, particles: Particles, grid: Grid, nodal_force: Array
+    ) -> None:
         """Add the forces on a material, as of the last :meth:`apply`, to nodal forces (N, 3).
 
         A particle under several loads gives each from the corners of its own face; Uintah gives all of them
@@ -191,7 +204,7 @@ class Loads:
         for load, law, action in self._actions(material):
             if not load.heats:
                 normals = self._normals_for(load, particles)
-                scatter_from_corners(law, action, particles, normals, self._grid.index, nodal_force)
+                scatter_from_corners(law, action, particles, normals, grid.index, nodal_force)
 
     def _normals_for(self, load: Load, particles: Particles) -> Array:
         return self._normals.of(particles.id) if load.along_particle_normals else NO_NORMALS

@@ -20,7 +20,7 @@ from solver.materials.constitutive import (
     stress_update,
 )
 from solver.particles import Array, Particles, StateVariable
-from solver.random import drand48
+from solver.random import Births, drand48
 from solver.tensor import (
     Tensor,
     determinant,
@@ -186,7 +186,8 @@ def _(model: ViscoScram, density: Any, temperature: Any) -> Any:
 def _(model: ViscoScram, state: Any, particles: Particles, material: Material, patch: Any) -> None:
     state.crack_radius[...] = model.InitialCrackRadius
     if model.randomize_parameters:
-        state.random[...] = drand48(state.random.size)
+        turn = patch.numbers()[1] if isinstance(patch, Births) else np.arange(state.random.size)
+        state.random[...] = drand48(int(turn.max(initial=-1)) + 1)[turn]
 
 
 class CrackGrowth(NamedTuple):

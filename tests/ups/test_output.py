@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from small_decks import CONTACT, LEFT, PLASTIC, SAVES, deck, material, write
 
+from solver.domains.exchange import OneRank
 from solver.grid import Grid, Patch
 from ups.archive import Archive
 from ups.deck import Checkpoint, DataArchiver, read_deck
 from ups.diagnostics import Diagnostics, Severity
-from ups.output import archive_grid, parse_indices, plan_output, reduction_format
+from ups.output import parse_indices, plan_output, reduction_format
+from ups.patches import archive_grid
 from ups.quantities import on_lattice
 from ups.schedule import Schedule
 from ups.session import run_deck
@@ -304,7 +307,8 @@ def test_lists_of_indices(text: str, expected: set[int] | None) -> None:
 def test_nodes_of_an_archive(extra: tuple[int, int, int], periodic: tuple[int, int, int]) -> None:
     patches = (Patch(0, (0, 0, 0), (2, 3, 1)), Patch(1, (2, 0, 0), (4, 3, 1)))
     grid = Grid((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), (4, 3, 1), extra, periodic, patches)
-    nodes = on_lattice(grid, grid.node_positions())
+    simulation = SimpleNamespace(grid=grid, exchange=OneRank(grid))
+    nodes = on_lattice(simulation, grid.node_positions())
     whole = archive_grid(grid).levels[0].whole("NCVariable")
     assert nodes.shape == (*whole.shape, 3)
     np.testing.assert_array_equal(nodes[0, 0, 0], whole.low)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import singledispatch
 from typing import Annotated, Any, NamedTuple
 
-from numpy.typing import NDArray
-
 from solver.declare import family
 from solver.dispatch import generic, generic_with_default
 from solver.materials.constitutive import Material, NoState, Step
@@ -77,7 +75,7 @@ def for_constitutive_model(model: Any, constitutive_model: Any) -> Any:
 
 
 @singledispatch
-def initialize_damage(model: Any, state: Any, particles: Particles, patch: NDArray[Any]) -> None:
+def initialize_damage(model: Any, state: Any, particles: Particles, patch: Any) -> None:
     """Set the initial damage of particles; ``patch`` holds the patch id of each, (n,)."""
 
 

@@ -19,6 +19,6 @@ DISTRIBUTION = family(
 
 
 @singledispatch
-def draw(distribution: Any, mean: float, deviation: float, patch: NDArray[Any]) -> NDArray[Any]:
+def draw(distribution: Any, mean: float, deviation: float, patch: Any) -> NDArray[Any]:
     """Values of the particles (n,), none negative; ``patch`` holds the patch id of each, (n,)."""
     raise TypeError(f"{type(distribution).__name__} is no distribution")

@@ -17,5 +17,5 @@ class Constant(NamedTuple):
 
 
 @draw.register
-def _(distribution: Constant, mean: float, deviation: float, patch: NDArray[Any]) -> NDArray[Any]:
+def _(distribution: Constant, mean: float, deviation: float, patch: Any) -> NDArray[Any]:
     return np.full(len(patch), mean)

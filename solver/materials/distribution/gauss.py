@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from solver.declare import model
 from solver.materials.distribution import draw
-from solver.random import gaussian, musil
+from solver.random import gaussian, musil, turns
 
 SEED = 0
 """Every patch starts from this seed, as in Uintah."""
@@ -21,10 +21,9 @@ class Gauss(NamedTuple):
 
 
 @draw.register
-def _(distribution: Gauss, mean: float, deviation: float, patch: NDArray[Any]) -> NDArray[Any]:
+def _(distribution: Gauss, mean: float, deviation: float, patch: Any) -> NDArray[Any]:
     values = np.empty(len(patch))
-    for number in np.unique(patch):
-        members = np.flatnonzero(patch == number)
-        pairs = musil(SEED, 2 * members.size).reshape(members.size, 2)
+    for _, members, turn in turns(patch):
+        pairs = musil(SEED, 2 * (int(turn.max()) + 1)).reshape(-1, 2)[turn]
         values[members] = np.abs(gaussian(pairs, mean, deviation))
     return values

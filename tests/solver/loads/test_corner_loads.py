@@ -29,7 +29,7 @@ def pressure(surface, load=1.0e4, number=1, outward=True):
 
 def on_grid(acting, creation, grid):
     nodal = np.zeros((grid.number_of_nodes, 3))
-    acting.scatter_corner_forces(0, creation.particles, nodal)
+    acting.scatter_corner_forces(0, creation.particles, grid, nodal)
     return nodal
 
 
