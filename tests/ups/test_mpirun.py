@@ -66,7 +66,7 @@ def test_ranks_give_what_one_process_gives(ranks: int, tmp_path: Path) -> None:
     archive = Archive(tmp_path / "many.uda")
     assert {patch.proc for patch in archive.grid().levels[0].patches} == set(range(ranks))
     files = {p.name for p in (tmp_path / "many.uda" / "t00001" / "l0").iterdir()}
-    assert files == {f"p{rank:05d}.{end}" for rank in range(ranks) for end in ("xml", "data")}
+    assert files == {f"p{rank:05d}.{end}" for rank in range(ranks) for end in ("xml", "data", "crc32")}
     # one rank speaks
     assert done.stdout.count("two blocks:") == done.stdout.count("done: 100 steps") == 1
     assert f"on {ranks} ranks" in done.stdout
