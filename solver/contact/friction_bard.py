@@ -10,7 +10,7 @@ import numpy as np
 from solver.contact.coulomb import centre_of_mass, friction_change, limited, shares_node
 from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactLaw, ContactScene, same
-from solver.contact.normals import SurfaceFields, surface_fields
+from solver.contact.normals import SurfaceFields, shared_nodes, surface_fields
 from solver.contact.vectors import dot, length, minus, over, plus, put_vector, times, vector_at
 from solver.declare import Parameter, Vector, model
 
@@ -44,13 +44,14 @@ class FrictionBard(ContactLaw):
         """Stop approach and slip, within Coulomb's limit."""
         if part == 1 and self.OneOrTwoStep != 2:
             return
+        shared = scene.once(shared_nodes)
         apply_friction(
             scene.velocity(part),
             scene.nodal.mass,
             scene.nodal.volume,
             scene.once(surface_fields),
             scene.listed(self.materials),
-            np.flatnonzero(scene.owned_nodes),
+            shared[scene.owned_nodes[shared]],
             self.mu,
             self.volume_constraint * node_cell_volumes(scene) / (8.0 * scene.node_to_cell_weight),
             self.separation_factor * np.cbrt(scene.cell_volume),

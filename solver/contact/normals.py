@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -12,8 +13,10 @@ from solver.contact.particle_shapes import ParticleShapes, particle_shapes, shap
 from solver.contact.vectors import dot, length, minus, over, plus, put_vector, times, vector_at
 from solver.declare import Vector
 from solver.dispatch import inline
-from solver.interpolation.shape import MOST_NODES
+from solver.grid import GridIndex
+from solver.interpolation.shape import MOST_NODES, particle_domain, reach
 from solver.nodal import EMPTY_MASS
+from solver.tensor import tensor_at
 
 SHORTEST = 1.0e-15
 """A mass gradient that is not longer has no direction; it stays as it is."""
@@ -48,11 +51,16 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     spacing = scene.grid.spacing
     scale = (spacing[0], spacing[1], 0.0) if scene.axisymmetric else (1.0, 1.0, 1.0)
     stress = np.zeros((*shape[:2], 6))
-    shared = np.count_nonzero(nodal.mass > EMPTY_MASS, axis=0) >= 2
+    shared = scene.once(shared_nodes)
+    wanted = np.zeros(shape[1], dtype=np.bool_)
+    wanted[shared] = True
+    near = np.zeros(shape[1], dtype=np.bool_)
+    mark_cells_near(scene.grid.index, shared, near)
     for m, particles in enumerate(scene.particles):
         add_particles(
             particle_shapes(scene, m),
-            shared,
+            wanted,
+            near,
             particles.mass,
             particles.mass / particles.volume if scene.axisymmetric else particles.mass,
             scale,
@@ -67,17 +75,56 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     for complete in on_their_way:
         complete()
     if scene.colinear_normals:
-        make_colinear(fields.normal, nodal.mass)
+        make_colinear(shared, fields.normal, nodal.mass)
     for m in range(shape[0]):
         scene.boundary_conditions.apply_symmetry(fields.normal[m], m)
-    finish(fields, nodal.mass, stress)
+    finish(shared, fields, nodal.mass, stress)
     return fields
+
+
+def shared_nodes(scene: ContactScene) -> Array:
+    """The nodes that two or more materials have mass at, in order; use it with ``scene.once``."""
+    return np.flatnonzero(np.count_nonzero(scene.nodal.mass > EMPTY_MASS, axis=0) >= 2)
+
+
+@deferred_kernel
+def mark_cells_near(grid: GridIndex, shared: Array, near: Array) -> None:
+    """Mark in ``near`` (N,) the first nodes of the cells from which a particle may reach a shared node.
+
+    A particle that reaches no farther than two cells has nodes from one before its cell to two after it.
+    """
+    nx, ny, nz = grid.nodes
+    for n in shared:
+        i, j, k = n % nx, n // nx % ny, n // (nx * ny)
+        for c in range(max(0, k - 2), min(nz, k + 2)):
+            for b in range(max(0, j - 2), min(ny, j + 2)):
+                for a in range(max(0, i - 2), min(nx, i + 2)):
+                    near[a + nx * (b + ny * c)] = True
+
+
+@inline
+def may_reach(shapes: ParticleShapes, p: int, near: Array) -> bool:
+    """Whether a particle may have a node that materials share, from the marked cells."""
+    F, size = tensor_at(shapes.deformation_gradient, p), tensor_at(shapes.size, p)
+    if reach(shapes.interpolation, particle_domain(shapes.interpolation, F, size)) > 2.0:
+        return True
+    grid = shapes.grid
+    cell, stride = 0, 1
+    for axis in range(3):
+        q = (shapes.position[p, axis] - grid.anchor[axis]) / grid.spacing[axis]
+        index = math.floor(q) - grid.first[axis]
+        if index < 0 or index >= grid.nodes[axis]:
+            return True
+        cell += index * stride
+        stride *= grid.nodes[axis]
+    return bool(near[cell])
 
 
 @deferred_kernel
 def add_particles(
     shapes: ParticleShapes,
     wanted: Array,
+    near: Array,
     mass: Array,
     gradient_weight: Array,
     gradient_scale: Vector,
@@ -86,11 +133,16 @@ def add_particles(
     nodal_moment: Array,
     nodal_stress: Array,
 ) -> None:
-    """Sum gradients, mass times position, and stress (xx, yy, zz, xy, xz, yz) at the wanted nodes (N,)."""
+    """Sum gradients, mass times position, and stress (xx, yy, zz, xy, xz, yz) at the wanted nodes (N,).
+
+    Particles in cells that ``near`` does not mark touch none of them.
+    """
     nodes = np.empty(MOST_NODES, np.int64)
     weights = np.empty(MOST_NODES)
     gradients = np.empty((MOST_NODES, 3))
     for p in range(mass.shape[0]):
+        if not may_reach(shapes, p, near):
+            continue
         for k in range(shape_of(shapes, p, nodes, weights, gradients)):
             n = shapes.images.node[nodes[k]]
             if not wanted[n]:
@@ -106,11 +158,11 @@ def add_particles(
 
 
 @deferred_kernel
-def make_colinear(normal: Array, mass: Array) -> None:
+def make_colinear(nodes: Array, normal: Array, mass: Array) -> None:
     """n_m <- (n_m - sum_k m_k n_k / sum_k m_k) / 2 over the other materials k; 0 where m has no mass."""
-    materials, count = mass.shape
+    materials = mass.shape[0]
     averaged = np.empty((materials, 3))
-    for n in range(count):
+    for n in nodes:
         for m in range(materials):
             others, total = (0.0, 0.0, 0.0), 0.0
             for k in range(materials):
@@ -124,11 +176,10 @@ def make_colinear(normal: Array, mass: Array) -> None:
 
 
 @deferred_kernel
-def finish(fields: SurfaceFields, mass: Array, stress: Array) -> None:
+def finish(nodes: Array, fields: SurfaceFields, mass: Array, stress: Array) -> None:
     """Make normals unit vectors and moments positions, and take the tractions."""
-    materials, count = mass.shape
-    for m in range(materials):
-        for n in range(count):
+    for m in range(mass.shape[0]):
+        for n in nodes:
             normal = vector_at(fields.normal[m], n)
             size = length(normal)
             if size > SHORTEST:
