@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -95,7 +96,7 @@ class Grid:
         e, p = self.extra_cells, self.periodic
         return (max(e[0], p[0]), max(e[1], p[1]), max(e[2], p[2]))
 
-    @property
+    @cached_property
     def index(self) -> GridIndex:
         """The view of the grid for kernels."""
         (x0, x1), (y0, y1), (z0, z1) = (self._stored(axis) for axis in range(3))
