@@ -144,6 +144,7 @@ def _overrides(
     metavar="[VARIABLE]",
     help="Show a variable at each output: a window, or ARCHIVE.png where there is no display.",
 )
+@click.option("--profile", is_flag=True, help="Print at the end where the time of the steps went.")
 @click.option("-q", "--quiet", is_flag=True, help="Print problems only.")
 @click.option("-v", "--verbose", is_flag=True, help="Print notes too, and details of internal errors.")
 def run(
@@ -156,6 +157,7 @@ def run(
     ranks_per_file: int,
     threads: int | None,
     live: str | None,
+    profile: bool,
     quiet: bool,
     verbose: bool,
 ) -> None:
@@ -197,6 +199,10 @@ def run(
                 show_warnings(deck)
 
             observers.append(Live(live, window=has_display(), stream=None if quiet else sys.stdout))
+        if profile:
+            from ups.profile import Profile
+
+            observers.append(Profile(sys.stdout))
         with nullcontext() if quiet else compilation_notice():
             result = go(
                 output=output,

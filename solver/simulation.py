@@ -44,6 +44,7 @@ from solver.materials.failure import Failure
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.nodal_stress import on_face, project_stress
 from solver.particles import Particles, keep
+from solver.performance.phases import Clock, Phase, no_clock
 from solver.team import Team, node_blocks
 
 Array = NDArray[Any]
@@ -136,6 +137,7 @@ class Simulation:
     whole_grid : nodes that no particle touches take part too, for those who look at nodal values afterwards.
     team : the threads that share the loops over particles; the results do not depend on how many they are.
     cohesive_zones : those of each file, in the deck's order; hooks make them act.
+    clock : told the phase of the step that begins, for those who want to know where time goes.
     """
 
     grid: Grid
@@ -156,6 +158,7 @@ class Simulation:
     team: Team = field(default_factory=Team)
     cohesive_zones: list[CohesiveZones] = field(default_factory=list)
     diffusion: Any = None
+    clock: Clock = no_clock
     time: float = 0.0
     step_number: int = 0
     reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
@@ -228,12 +231,15 @@ class Simulation:
             when the flags ask for it and a node is too fast for this step; the particles are as they were.
         """
         self.reductions.clear()
+        self.clock(Phase.LOADS)
         for action in self.before_step:
             action(self, dt)
         self._project_all()
         scene = self._scene(dt)
+        self.clock(Phase.CONTACT)
         for law in self.contact_laws:
             law.apply(1, scene)
+        self.clock(Phase.GRID)
         for action in self.after_contact:
             action(self, dt)
         self._record_traction()
@@ -241,9 +247,12 @@ class Simulation:
         for m, body in enumerate(self.bodies):
             self._accelerate(m, body, dt)
         if self.flags.restart_on_large_nodal_velocity and self.too_fast(dt):
+            self.clock(Phase.OUTSIDE)
             raise NodesTooFastError(f"step {self.step_number + 1}: a node would cross half a cell in {dt:g}")
+        self.clock(Phase.CONTACT)
         for law in self.contact_laws:
             law.apply(2, scene)
+        self.clock(Phase.GRID)
         self._impose_velocities(dt)
         for action in self.after_boundary_conditions:
             action(self, dt)
@@ -262,14 +271,18 @@ class Simulation:
                     self.reductions["StrainEnergy", material] += change
         for key, value in scene.reductions.items():
             self.reductions[key] = self.reductions.get(key, 0.0) + value
+        self.clock(Phase.LOADS)
         for action in self.after_step:
             action(self, dt)
+        self.clock(Phase.SETTLE)
         for body in self.bodies:
             self._settle(body)
+        self.clock(Phase.EXCHANGE)
         self.exchange.migrate(self.bodies)
         stable = self._conclude(stable)
         self.time += dt
         self.step_number += 1
+        self.clock(Phase.OUTSIDE)
         return self._bounded(stable)
 
     def records(self, index: int) -> tuple[Any, ...]:
@@ -347,9 +360,11 @@ class Simulation:
     def _project(self, m: int, body: Body) -> None:
         """Sums over the particles of a body at the nodes: mass, momentum, forces, volume and heat."""
         rows, touched = self._sums_of(m)
+        self.clock(Phase.GRID)
         nodes.forget(self._active[m], touched, self._fields[m])
         if self.whole_grid:
             touched[:] = 1
+        self.clock(Phase.TO_GRID)
         if self._is_active(body):
             self._scatter(m, body)
             if self.flags.gradient_enhanced_projection:
@@ -361,7 +376,9 @@ class Simulation:
 
     def _arrive(self, m: int, finish: Callable[[], None]) -> None:
         """Velocity, forces and temperature of a body from its sums, with the conditions on symmetry faces."""
+        self.clock(Phase.EXCHANGE)
         finish()
+        self.clock(Phase.GRID)
         nodal, (rows, touched) = self.nodal, self._sums_of(m)
         count = nodes.list_touched(touched, touched.view(np.uint64), self._active_nodes[m])
         self._active[m] = self._active_nodes[m, :count]
@@ -510,7 +527,9 @@ class Simulation:
 
     def _move(self, m: int, body: Body, dt: float) -> None:
         particles = body.particles
+        self.clock(Phase.TO_PARTICLES)
         filtered = self._filter(m, body) if self.flags.XPIC2 and not body.rigid else None
+        self.clock(Phase.GRID)
         nodes.interleave(self._active[m], self._fields[m], self._temperature_star[m], self._gathered)
         options, index = self._transfer(body), self.grid.index
 
@@ -530,6 +549,7 @@ class Simulation:
                 sums,
             )
 
+        self.clock(Phase.TO_PARTICLES)
         motion = transfer.total(self._in_chunks(body, move))
         if filtered is not None:
             self._sums_of(m).rows[self._active[m]] = 0.0
@@ -551,17 +571,8 @@ class Simulation:
         return filtered
 
     def _update_stress(self, body: Body, cells: Array, dt: float) -> float:
-        flags = self.flags
-        heating = flags.artificial_viscosity_heating
-        step = Step(
-            dt=dt,
-            time=self.time,
-            length=sum(self.grid.spacing) / 3.0,
-            artificial_viscosity=flags.artificial_viscosity,
-            viscosity_linear=flags.artificial_viscosity_coeff1,
-            viscosity_quadratic=flags.artificial_viscosity_coeff2,
-            viscosity_heating=flags.artificial_viscosity if heating is None else heating,
-        )
+        self.clock(Phase.STRESS)
+        step = self.constants_of_step(dt)
         if self.flags.pressure_stabilization:
             self._average_dilatation(body, cells, dt)
 
@@ -596,6 +607,20 @@ class Simulation:
         if not is_coupled(body.model):
             return None
         return Neighbourhood(self.interpolator, self.grid.index, body.particles.position.copy(), dt)
+
+    def constants_of_step(self, dt: float) -> Step:
+        """What the stress updates of a step of ``dt`` from now on know of it."""
+        flags = self.flags
+        heating = flags.artificial_viscosity_heating
+        return Step(
+            dt=dt,
+            time=self.time,
+            length=sum(self.grid.spacing) / 3.0,
+            artificial_viscosity=flags.artificial_viscosity,
+            viscosity_linear=flags.artificial_viscosity_coeff1,
+            viscosity_quadratic=flags.artificial_viscosity_coeff2,
+            viscosity_heating=flags.artificial_viscosity if heating is None else heating,
+        )
 
     def _particle_cells(self, body: Body) -> Array:
         """Cells of the particles at the start of the step, x fastest in this rank's, where pressure is stabilized."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from ups.deck import Deck
     from ups.deck import read_deck as read
     from ups.diagnostics import DeckError
+    from ups.profile import Profile
     from ups.result import Result
     from ups.session import resume_run as resume
 
@@ -29,6 +30,7 @@ _HOMES = {
     "ArchiveError": ("ups.archive", "ArchiveError"),
     "Deck": ("ups.deck", "Deck"),
     "DeckError": ("ups.diagnostics", "DeckError"),
+    "Profile": ("ups.profile", "Profile"),
     "Result": ("ups.result", "Result"),
     "open": ("ups.archive", "Archive"),
     "read": ("ups.deck", "read_deck"),
@@ -40,6 +42,7 @@ __all__ = [
     "ArchiveError",
     "Deck",
     "DeckError",
+    "Profile",
     "Result",
     "open",
     "read",

@@ -31,6 +31,7 @@ from ups.rules.old_forms import modernise
 
 if TYPE_CHECKING:
     from ups.result import Result
+    from ups.run import Observer
 
 
 @dataclass(frozen=True)
@@ -393,11 +394,12 @@ class Deck:
         *,
         max_steps: int | None = None,
         threads: int | None = None,
+        observers: Iterable[Observer] = (),
     ) -> Result:
         """Run the deck and return its result; see ``ups.session.run_deck``."""
         from ups.session import run_deck
 
-        return run_deck(self, output=output, max_steps=max_steps, threads=threads)
+        return run_deck(self, output=output, max_steps=max_steps, threads=threads, observers=observers)
 
 
 def read_deck(
