@@ -28,9 +28,7 @@ class Profile(Observer):
     report : a ``solver.performance.report.Report``; None before the run has ended, or if it made no step.
     """
 
-    def __init__(
-        self, stream: TextIO | None = None, timer: Callable[[], float] = time.perf_counter
-    ) -> None:
+    def __init__(self, stream: TextIO | None = None, timer: Callable[[], float] = time.perf_counter) -> None:
         self.report: Report | None = None
         self._stream = stream
         self._timer = timer

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from solver.jit import kernel
 from solver.lanes import WIDTH, every, lanes_at, put_lanes
@@ -35,14 +34,14 @@ class Machine(NamedTuple):
 
 @kernel
 def triad(a: Any, b: Any, c: Any, s: float, first: int, last: int) -> None:
-    """a = b + s c, McCalpin's triad."""
+    """McCalpin's triad, a = b + s c."""
     for i in range(first, last):
         a[i] = b[i] + s * c[i]
 
 
 @kernel
 def multiply_add(rows: Any, row: int, rounds: int) -> None:
-    """x <- x s + t in :data:`CHAINS` independent vectors; begins with and leaves numbers in a row of ``rows``."""
+    """Let x <- x s + t in :data:`CHAINS` independent vectors; begins with and leaves numbers in a row of ``rows``."""
     x = lanes_at(rows, row, 0)
     s, t = every(0.999), every(0.001)
     x0, x1, x2, x3, x4, x5 = x, x + 0.1, x + 0.2, x + 0.3, x + 0.4, x + 0.5
@@ -67,16 +66,18 @@ class Calibration:
         self._threads = threads
         self._team = Team(threads)
         self._timer = timer
-        self._arrays: list[NDArray[np.float64]] = [np.full(LENGTH, 1.0 + n) for n in range(3)]
+        self._a, self._b, self._c = (np.full(LENGTH, value) for value in (0.0, 1.0, 2.0))
         self._rows = np.ones((8 * threads, WIDTH))  # a row in 8 is used: threads write to lines of their own
-        triad(*self._arrays, 3.0, 0, 1)
+        triad(self._a, self._b, self._c, 3.0, 0, 1)
         multiply_add(self._rows, 0, 1)
 
     def measure(self, repetitions: int = 5) -> Machine:
         """The medians of some repetitions, the two kernels in turn."""
         bandwidths, flops = [], []
         for _ in range(repetitions):
-            seconds = self._seconds(LENGTH, lambda first, last: triad(*self._arrays, 3.0, first, last))
+            seconds = self._seconds(
+                LENGTH, lambda first, last: triad(self._a, self._b, self._c, 3.0, first, last)
+            )
             bandwidths.append(3 * 8 * LENGTH / seconds)
             seconds = self._seconds(
                 self._threads, lambda first, last: multiply_add(self._rows, 8 * first, ROUNDS)

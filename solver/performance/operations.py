@@ -31,11 +31,16 @@ def _counting(name: str) -> Callable[[Any, Any], Any]:
     return operation
 
 
+def _counted_result(name: str) -> Callable[[Any], Any]:
+    plain = getattr(np.float64, name)
+    return lambda a: Counted(plain(a))
+
+
 for _name in ("add", "sub", "mul", "truediv", "pow"):
     setattr(Counted, f"__{_name}__", _counting(f"__{_name}__"))
     setattr(Counted, f"__r{_name}__", _counting(f"__r{_name}__"))
 for _name in ("__neg__", "__abs__", "__pos__"):
-    setattr(Counted, _name, lambda a, _plain=getattr(np.float64, _name): Counted(_plain(a)))
+    setattr(Counted, _name, _counted_result(_name))
 
 
 def counted(values: Any) -> Any:

@@ -22,6 +22,7 @@ from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functi
 from solver.interpolation.stencil import direction
 from solver.kernels.stress import STRESS_SUMS, Kinematics, update_chunk
 from solver.kernels.transfer import CHANNELS, GATHERED
+from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
 from solver.performance.operations import operations_of
 from solver.performance.phases import Phase
@@ -43,45 +44,40 @@ class Access(NamedTuple):
     written: frozenset[str]
 
 
+def _access(read: str, written: str = "") -> Access:
+    return Access(frozenset(read.split()), frozenset(written.split()))
+
+
 ACCESS = {
-    Phase.TO_GRID: Access(
-        frozenset(
-            "position mass volume velocity stress temperature artificial_pressure temperature_gradient "
-            "external_force external_heat_rate".split()
-        ),
-        frozenset(),
+    Phase.TO_GRID: _access(
+        read="position mass volume velocity stress temperature artificial_pressure temperature_gradient "
+        "external_force external_heat_rate"
     ),
-    Phase.TO_PARTICLES: Access(
-        frozenset("position velocity displacement mass temperature".split()),
-        frozenset(
-            "position velocity displacement old_velocity velocity_gradient temperature_gradient "
-            "temperature_rate".split()
-        ),
+    Phase.TO_PARTICLES: _access(
+        read="position velocity displacement mass temperature",
+        written="position velocity displacement old_velocity velocity_gradient temperature_gradient "
+        "temperature_rate",
     ),
-    Phase.STRESS: Access(
-        frozenset(
-            "position deformation_gradient velocity_gradient stress volume mass temperature "
-            "previous_temperature temperature_rate localized old_velocity".split()
-        ),
-        frozenset(
-            "deformation_gradient stress volume temperature previous_temperature heating_rate "
-            "artificial_pressure localized".split()
-        ),
+    Phase.STRESS: _access(
+        read="position deformation_gradient velocity_gradient stress volume mass temperature "
+        "previous_temperature temperature_rate localized old_velocity",
+        written="deformation_gradient stress volume temperature previous_temperature heating_rate "
+        "artificial_pressure localized",
     ),
-    Phase.SETTLE: Access(frozenset("position mass temperature localized".split()), frozenset()),
+    Phase.SETTLE: _access(read="position mass temperature localized"),
 }
 """What each phase does with particles; transfers also read what the interpolator's domains need."""
 
-NODE_READ_AND_WRITTEN = CHANNELS + 13 + 10 + 6 + 6 + 3 + 8 + GATHERED + 4
-"""Numbers a node and material that the grid phase moves: the sums read, 13 nodal values made of them; 10 read and 6
-written by the acceleration; 6 read and 3 written for the rate of change; 8 read and put side by side in a row; mass
-and external force read for their totals."""
+NODE_READ_AND_WRITTEN = 20 + 2 * CHANNELS + 13 + 10 + 6 + 4 + 6 + 3 + 8 + GATHERED
+"""Numbers an active node that the grid phase moves: 20 forgotten; the sums read and cleared, 13 nodal values made of
+them; 10 read and 6 written by the acceleration; mass and external force read for their totals; 6 read and 3 written
+for the rate of change; 8 read and put side by side in a row."""
 
 NODE_HEAT = 12
 """More of them where heat is conducted."""
 
 NODE_OPERATIONS = 5 + 21 + 6 + 4
-"""Operations a node and material: 5 quotients by mass and the mass's floor, 7 for each component of acceleration and v*,
+"""Operations an active node: 5 quotients by mass and the mass's floor, 7 for each component of acceleration and v*,
 2 for each of the rate of change, 4 additions to the totals."""
 
 WEIGHT_OPERATIONS_A_NODE = 5
@@ -120,8 +116,8 @@ def work_of_step(simulation: Simulation) -> dict[Phase, Work]:
     bodies = [body for body in simulation.bodies if len(body.particles)]
     weights = [weights_of(simulation, body) for body in bodies]
     domain = domain_fields(simulation.interpolator)
-    nodes = simulation.grid.number_of_nodes
-    rows = DOUBLE * nodes * len(bodies)
+    nodes = active_nodes(simulation)
+    rows = DOUBLE * nodes
     heat = simulation.flags.explicit_heat_conduction
     counts = [len(body.particles) for body in bodies]
     to_grid = sum(
@@ -134,9 +130,7 @@ def work_of_step(simulation: Simulation) -> dict[Phase, Work]:
     )
     return {
         Phase.TO_GRID: Work(_moved(bodies, Phase.TO_GRID, domain) + 2 * CHANNELS * rows, to_grid),
-        Phase.GRID: Work(
-            rows * (NODE_READ_AND_WRITTEN + NODE_HEAT * heat), nodes * len(bodies) * NODE_OPERATIONS
-        ),
+        Phase.GRID: Work(rows * (NODE_READ_AND_WRITTEN + NODE_HEAT * heat), nodes * NODE_OPERATIONS),
         Phase.TO_PARTICLES: Work(_moved(bodies, Phase.TO_PARTICLES, domain) + GATHERED * rows, to_particles),
         Phase.STRESS: Work(
             _moved(bodies, Phase.STRESS) + sum(2 * _bytes(body.records[1:]) for body in bodies),
@@ -144,6 +138,11 @@ def work_of_step(simulation: Simulation) -> dict[Phase, Work]:
         ),
         Phase.SETTLE: Work(_moved(bodies, Phase.SETTLE) + sum(counts), 6.0 * sum(counts)),
     }
+
+
+def active_nodes(simulation: Simulation) -> int:
+    """The nodes that particles touched in the last step, counted for each body."""
+    return int(np.count_nonzero(simulation.nodal.mass > EMPTY_MASS))
 
 
 def _moved(bodies: Iterable[Body], phase: Phase, domain: frozenset[str] = frozenset()) -> int:
