@@ -41,7 +41,7 @@ def cells_for(particles: int) -> int:
 
 
 def block_deck(
-    model: str, interpolator: str, particles: int, *, steps: int = 1000, saves: tuple[str, ...] = ()
+    model: str, interpolator: str, particles: int, *, steps: int = 1000, saves: tuple[str, ...] = ("p.x",)
 ) -> str:
     """The text of the deck: a cube at 190 m/s against a plane, 0 of z, on which it slides freely.
 
