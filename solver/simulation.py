@@ -46,6 +46,7 @@ from solver.nodal_stress import on_face, project_stress
 from solver.particles import Particles, keep
 from solver.performance.phases import Clock, Phase, no_clock
 from solver.team import Team, node_blocks
+from solver.workspace import Workspace
 
 Array = NDArray[Any]
 
@@ -190,6 +191,8 @@ class Simulation:
         self._blocks: dict[int, tuple[int, int, list[NodeBlock]]] = {}
         self._temperature_star = np.zeros((len(self.bodies), count))
         self._projected_temperature = np.zeros((len(self.bodies), count))
+        self._inner_nodes = _inner_nodes(self.grid)
+        self._workspace = Workspace()
         self._owned_nodes = _owned_nodes(self.grid)
         self._owned_cells = _owned_cells(self.grid)
         self._uncounted = ~self.exchange.counted
@@ -490,8 +493,7 @@ class Simulation:
     def too_fast(self, dt: float) -> bool:
         """Whether a node inside the domain would cross half a cell in the last step's dt."""
         half = 0.25 * sum(h * h for h in self.grid.spacing)
-        inner = _inner_nodes(self.grid)
-        fastest = max(nodes.fastest_node(v, inner) for v in self.nodal.velocity_star)
+        fastest = max(nodes.fastest_node(v, self._inner_nodes) for v in self.nodal.velocity_star)
         return largest_number(self.exchange.communicator, fastest) * dt * dt > half
 
     def _impose_velocities(self, dt: float) -> None:
@@ -552,7 +554,7 @@ class Simulation:
         self.clock(Phase.TO_PARTICLES)
         motion = transfer.total(self._in_chunks(body, move))
         if filtered is not None:
-            self._sums_of(m).rows[self._active[m]] = 0.0
+            nodes.clear(self._active[m], self._sums_of(m).rows)
         self._add("KineticEnergy", body, motion.kinetic_energy)
         self._add("ThermalEnergy", body, motion.thermal_energy)
         self._add("TotalMomentum", body, np.array(motion.momentum))
@@ -560,7 +562,7 @@ class Simulation:
 
     def _filter(self, m: int, body: Body) -> Array:
         """XPIC(2): velocities S v of the particles (n, 3); leaves S+ S v at the nodes in the first of the sums."""
-        nodal, filtered = self.nodal, np.empty((len(body.particles), 3))
+        nodal, filtered = self.nodal, self._workspace.rows("filtered", len(body.particles), np.float64, 3)
         self._gathered[:, :3] = nodal.velocity[m]
         sums = self._sums_of(m)
         transfer.smooth_velocity(
@@ -639,7 +641,7 @@ class Simulation:
         np.divide(volume, reference, out=self._cell_stretch, where=reference > 0.0)
 
     def _settle(self, body: Body) -> None:
-        kept = np.empty(len(body.particles), dtype=np.bool_)
+        kept = self._workspace.rows("kept", len(body.particles), np.bool_)
         lost = settle.settle(
             body.particles,
             self.grid.index,

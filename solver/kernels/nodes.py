@@ -194,6 +194,14 @@ def divide_by_mass(active: Any, rows: Any, mass: Any) -> None:
 
 
 @kernel
+def clear(active: Any, rows: Any) -> None:
+    """Make the rows (N, ..) of active nodes zero."""
+    for n in range(active.shape[0]):
+        for c in range(rows.shape[1]):
+            rows[active[n], c] = 0.0
+
+
+@kernel
 def interleave(active: Any, fields: NodalFields, temperature_star: Any, gathered: Any) -> None:
     """Put what particles gather from a node side by side: rows (N, GATHERED)."""
     for n in range(active.shape[0]):
