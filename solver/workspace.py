@@ -15,7 +15,7 @@ class Workspace:
         self._arrays: dict[str, NDArray[Any]] = {}
 
     def rows(self, name: str, count: int, dtype: DTypeLike, *width: int) -> NDArray[Any]:
-        """An array (count, ...), rows of the given ``width``, with anything in it, the same memory at every call with that name."""
+        """An array (count, ..width) with anything in it; the same memory at every call with that name."""
         array = self._arrays.get(name)
         if array is None or len(array) < count:
             array = self._arrays[name] = np.empty((count, *width), dtype)

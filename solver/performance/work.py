@@ -24,6 +24,7 @@ from solver.kernels.stress import STRESS_SUMS, Kinematics, update_chunk
 from solver.kernels.transfer import CHANNELS, GATHERED
 from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
+from solver.performance.memory import bytes_of
 from solver.performance.operations import operations_of
 from solver.performance.phases import Phase
 from solver.tensor import tensor_at
@@ -133,7 +134,7 @@ def work_of_step(simulation: Simulation) -> dict[Phase, Work]:
         Phase.GRID: Work(rows * (NODE_READ_AND_WRITTEN + NODE_HEAT * heat), nodes * NODE_OPERATIONS),
         Phase.TO_PARTICLES: Work(_moved(bodies, Phase.TO_PARTICLES, domain) + GATHERED * rows, to_particles),
         Phase.STRESS: Work(
-            _moved(bodies, Phase.STRESS) + sum(2 * _bytes(body.records[1:]) for body in bodies),
+            _moved(bodies, Phase.STRESS) + sum(2 * bytes_of(body.records[1:]) for body in bodies),
             _sum(stress_operations(simulation, body) for body in bodies),
         ),
         Phase.SETTLE: Work(_moved(bodies, Phase.SETTLE) + sum(counts), 6.0 * sum(counts)),
@@ -153,10 +154,6 @@ def _moved(bodies: Iterable[Body], phase: Phase, domain: frozenset[str] = frozen
         for fields in (access.read | domain, access.written):
             total += sum(getattr(body.particles, name).nbytes for name in fields)
     return total
-
-
-def _bytes(records: Iterable[Iterable[Any]]) -> int:
-    return sum(array.nbytes for record in records for array in record)
 
 
 def _sum(numbers: Iterable[float | None]) -> float | None:
