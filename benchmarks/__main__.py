@@ -17,6 +17,7 @@ from benchmarks.measure import measure
 from benchmarks.suite import Case, blocks, quick_blocks, reference_decks
 from solver.performance.report import Report
 from solver.team import available_cores
+from ups.diagnostics import DeckError, Severity
 
 STEPS, QUICK_STEPS = 20, 8
 
@@ -61,7 +62,12 @@ def measured(cases: Iterable[Case], steps: int, threads: int) -> dict[str, Repor
     """The reports by case, printed as they come."""
     reports = {}
     for case in cases:
-        report = measure(case.deck(), steps=steps, threads=threads)
+        try:
+            report = measure(case.deck(), steps=steps, threads=threads)
+        except DeckError as problem:
+            errors = [d.message for d in problem.diagnostics if d.severity is Severity.ERROR]
+            click.echo(f"{case.name}\nleft out: {errors[0]}\n")
+            continue
         reports[case.name] = report
         click.echo(f"{case.name}\n{report.table()}")
         if case.sus is not None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -127,7 +128,7 @@ def _section_lines(element: etree._Element, indent: int) -> Iterator[str]:
     if children:
         yield f"{blank}<{start}>"
         if text.strip():
-            yield f"{blank}  {escape(' '.join(text.split()))}"
+            yield f"{blank}  {escape(' '.join(text.split()), quote=False)}"
         for child in children:
             yield from _section_lines(child, indent + 1)
         yield f"{blank}</{name}>"
