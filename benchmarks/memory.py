@@ -10,7 +10,7 @@ from pathlib import Path
 import click
 
 from benchmarks.block import block_deck
-from solver.performance.memory import EROSION, PARTICLE, bytes_of, bytes_of_models
+from solver.performance.memory import PARTICLE, bytes_of, bytes_of_models
 from ups.deck import read_deck
 from ups.run import Observer, Run
 from ups.session import run_deck
@@ -51,7 +51,6 @@ def table() -> str:
     for size in sorted(by_size):
         names = ", ".join(f"`{name}`" for name in sorted(by_size[size], key=str.lower))
         lines.append(f"| {names} | {size} | {PARTICLE + size} |")
-    lines.append(f"| where particles may fail, in addition | {EROSION} | |")
     return "\n".join(lines)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -43,7 +44,7 @@ def quick_blocks() -> Iterator[Case]:
 def block(model: str, interpolator: str, particles: int) -> Case:
     """A block of copper; see ``benchmarks.block``."""
     text = block_deck(model, interpolator, particles)
-    return Case(f"block {model} {interpolator} {particles}", lambda: read_deck("block.ups", text=text))
+    return Case(f"block {model} {interpolator} {particles}", partial(read_deck, "block.ups", text=text))
 
 
 def reference_decks() -> Iterator[Case]:
@@ -52,7 +53,7 @@ def reference_decks() -> Iterator[Case]:
         facts = json.loads(about.read_text())
         deck = about.with_name("deck.ups")
         if _particles(facts["particles"]) > LEAST_PARTICLES:
-            yield Case(about.parent.name, lambda deck=deck: read_deck(deck), facts["seconds_per_step"])
+            yield Case(about.parent.name, partial(read_deck, deck), facts["seconds_per_step"])
 
 
 def _particles(counts: dict[str, int]) -> int:

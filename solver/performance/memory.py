@@ -21,11 +21,8 @@ def bytes_a_particle(record: type[Any]) -> int:
     return bytes_of([new_arrays(record, 1)])
 
 
-PARTICLE = bytes_a_particle(Particles)
-"""Bytes that every particle takes."""
-
-EROSION = bytes_a_particle(ErosionState)
-"""More of them where particles may fail."""
+PARTICLE = bytes_a_particle(Particles) + bytes_a_particle(ErosionState)
+"""Bytes that every particle takes, the time at which it failed included."""
 
 
 def bytes_of_models() -> dict[str, int]:

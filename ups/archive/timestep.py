@@ -5,7 +5,6 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -128,7 +127,7 @@ def _section_lines(element: etree._Element, indent: int) -> Iterator[str]:
     if children:
         yield f"{blank}<{start}>"
         if text.strip():
-            yield f"{blank}  {escape(' '.join(text.split()), quote=False)}"
+            yield f"{blank}  {escape(' '.join(text.split()))}"
         for child in children:
             yield from _section_lines(child, indent + 1)
         yield f"{blank}</{name}>"
