@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
 from solver.interpolation.stencil import direction
-from solver.kernels.stress import STRESS_SUMS, Kinematics, update_chunk
+from solver.kernels.stress import STRESS_SUMS, Kinematics, update_stresses
 from solver.kernels.transfer import CHANNELS, GATHERED
 from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
@@ -219,7 +219,7 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
     failure = body.failure._replace(damage_state=damage, erosion_state=erosion)
     try:
         operations = operations_of(
-            update_chunk,
+            update_stresses.py_func,  # type: ignore[attr-defined]  # numba keeps the function as it was written
             body.model,
             state,
             failure,
@@ -230,7 +230,8 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
             np.zeros(0, np.int64),
             np.zeros(0),
             0,
-            np.zeros(STRESS_SUMS),
+            1,
+            np.zeros((1, STRESS_SUMS)),
         )
     except (ArithmeticError, ValueError):
         return None
