@@ -27,7 +27,9 @@ def draw(reports: Mapping[str, Report], file: Path) -> None:
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(figsize=(9.0, 5.5), layout="constrained")
-    balance = float(np.median([r.machine.flops / r.machine.bandwidth for r in reports.values()]))
+    flops = float(np.median([report.machine.flops for report in reports.values()]))
+    bandwidth = float(np.median([report.machine.bandwidth for report in reports.values()]))
+    balance = flops / bandwidth
     intensity = np.geomspace(0.02, 30.0, 200)
     axes.plot(intensity, np.minimum(intensity / balance, 1.0), "k-", linewidth=1.5)
     axes.plot(intensity, np.minimum(intensity / balance, 1.0) / 3.0, "k:", linewidth=1.0)
@@ -49,11 +51,7 @@ def draw(reports: Mapping[str, Report], file: Path) -> None:
     axes.set_yscale("log")
     axes.set_xlabel("operations a byte (model)")
     axes.set_ylabel("operations a second, share of measured peak")
-    machine = next(iter(reports.values())).machine
-    axes.set_title(
-        f"roofline: {1e-9 * machine.flops:.3g} GFLOP/s multiply-add, "
-        f"{1e-9 * machine.bandwidth:.3g} GB/s triad"
-    )
+    axes.set_title(f"roofline: {1e-9 * flops:.3g} GFLOP/s multiply-add, {1e-9 * bandwidth:.3g} GB/s triad")
     axes.grid(True, which="both", alpha=0.2)
     axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.savefig(file, dpi=120)

@@ -52,7 +52,9 @@ def test_the_command_that_makes_a_picture_stands_beside_it(page: Path) -> None:
     for link in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text):
         picture = (page.parent / link).resolve()
         name = picture.relative_to(ROOT)
-        assert re.search(rf"^[^|]*ups (plot|history) .*-o {name}$", text, re.MULTILINE)
+        assert re.search(
+            rf"^[^|]*(ups (plot|history) .*-o|python -m benchmarks .*--plot) {name}$", text, re.MULTILINE
+        )
         assert picture.stat().st_size < MOST_BYTES_OF_A_PICTURE
 
 
