@@ -134,7 +134,7 @@ def work_of_step(simulation: Simulation) -> dict[Phase, Work]:
         Phase.GRID: Work(rows * (NODE_READ_AND_WRITTEN + NODE_HEAT * heat), nodes * NODE_OPERATIONS),
         Phase.TO_PARTICLES: Work(_moved(bodies, Phase.TO_PARTICLES, domain) + GATHERED * rows, to_particles),
         Phase.STRESS: Work(
-            _moved(bodies, Phase.STRESS) + sum(2 * bytes_of(body.records[1:]) for body in bodies),
+            _moved(bodies, Phase.STRESS) + sum(2 * bytes_of(_state_of(body)) for body in bodies),
             _sum(stress_operations(simulation, body) for body in bodies),
         ),
         Phase.SETTLE: Work(_moved(bodies, Phase.SETTLE) + sum(counts), 6.0 * sum(counts)),
@@ -154,6 +154,11 @@ def _moved(bodies: Iterable[Body], phase: Phase, domain: frozenset[str] = frozen
         for fields in (access.read | domain, access.written):
             total += sum(getattr(body.particles, name).nbytes for name in fields)
     return total
+
+
+def _state_of(body: Body) -> tuple[Any, ...]:
+    """The records that the stress update of a body reads and writes beside its particles."""
+    return body.state, body.failure.damage_state, body.failure.erosion_state
 
 
 def _sum(numbers: Iterable[float | None]) -> float | None:
@@ -215,7 +220,7 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
     def of_sample(record: Any) -> Any:
         return type(record)(*(array[chosen] if len(array) else array for array in record))
 
-    particles, state, damage, erosion = (of_sample(record) for record in body.records)
+    state, damage, erosion = (of_sample(record) for record in _state_of(body))
     failure = body.failure._replace(damage_state=damage, erosion_state=erosion)
     try:
         operations = operations_of(
@@ -223,7 +228,7 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
             body.model,
             state,
             failure,
-            particles,
+            of_sample(body.particles),
             body.material,
             simulation.constants_of_step(simulation.initial_time_step()),
             Kinematics(simulation.flags.minimum_subcycles_for_F, False),
