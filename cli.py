@@ -205,7 +205,7 @@ def run(
         if profile:
             from ups.profile import Profile
 
-            observers.append(Profile(sys.stdout))
+            observers.append(Profile(sys.stdout if ranks.rank == 0 else None))
         with nullcontext() if quiet else compilation_notice():
             result = go(
                 output=output,
