@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from solver.declare import family
 from solver.dispatch import generic, generic_with_default
@@ -44,3 +44,17 @@ def in_step(model: Any, state: PlasticityState) -> Any:
     ``flow_stress``, ``hardening_slope`` and ``rate_slope``; others are used as they are.
     """
     return model
+
+
+class Response(NamedTuple):
+    """Flow stress and its derivatives at one state."""
+
+    flow_stress: float
+    hardening_slope: float
+    rate_slope: float
+
+
+@generic_with_default
+def response(model: Any, state: PlasticityState) -> Response:
+    """Flow stress and both derivatives; models to which they have much in common find that once."""
+    return Response(flow_stress(model, state), hardening_slope(model, state), rate_slope(model, state))

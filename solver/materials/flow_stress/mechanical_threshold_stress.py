@@ -7,7 +7,14 @@ from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
 from solver.dispatch import implements, inline
-from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
+from solver.materials.flow_stress import (
+    Response,
+    flow_stress,
+    hardening_slope,
+    in_step,
+    rate_slope,
+    response,
+)
 from solver.materials.plasticity_state import PlasticityState
 
 LEAST_RATE = 1.0e-7
@@ -120,23 +127,14 @@ def scaling(activated: float, p: float) -> float:
     return (1.0 - activated) ** (1.0 / p)
 
 
-class Hardening(NamedTuple):
-    """Where the threshold stress stands."""
-
-    initial_rate: float
-    """theta_0."""
-    saturation: float
-    """sigma_es."""
-    threshold: float
-    """sigma_e."""
-
-
 @inline
 def threshold_stress(
     model: MechanicalThresholdStress, initial_rate: float, saturation: float, strain: float
 ) -> float:
     """sigma_e after a plastic strain, by the midpoint rule with Newton's iteration in each step."""
     threshold = 0.0
+    if strain <= 0.0:
+        return threshold
     growth = strain / SUBSTEPS * initial_rate
     back = growth / math.tanh(model.alpha)
     sharpness = 0.5 * model.alpha / saturation
@@ -154,43 +152,6 @@ def threshold_stress(
 
 
 @inline
-def hardening_state(model: MechanicalThresholdStress, state: PlasticityState, constants: Phase) -> Hardening:
-    """Initial hardening rate, which is never negative, saturation and threshold stress at a state."""
-    rate = rate_of(state)
-    T = state.temperature
-    rate_part = model.a_1 * math.log(rate) + model.a_2 * math.sqrt(rate)
-    initial_rate = max(constants.a_0 + rate_part - constants.a_3 * T, 0.0)
-    power = model.koverbcubed * T / state.shear_modulus / constants.g_0es
-    saturation = constants.sigma_es0 * (rate / model.edot_es0) ** power
-    return Hardening(
-        initial_rate, saturation, threshold_stress(model, initial_rate, saturation, state.plastic_strain)
-    )
-
-
-@implements(flow_stress, MechanicalThresholdStress)
-def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
-    rate = rate_of(state)
-    constants = phase(model, state.temperature)
-    energy = model.koverbcubed * state.temperature / state.shear_modulus
-    evolving = scaling(activation(energy / model.g_0e, model.edot_0e, rate, model.q_e), model.p_e)
-    stress = evolving * hardening_state(model, state, constants).threshold
-    if model.p_i > 0.0:
-        activated = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
-        stress += scaling(activated, model.p_i) * constants.sigma_i
-    return model.sigma_a + stress * (state.shear_modulus / model.mu_0)
-
-
-@implements(hardening_slope, MechanicalThresholdStress)
-def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
-    energy = model.koverbcubed * state.temperature / state.shear_modulus
-    activated = activation(energy / model.g_0e, model.edot_0e, rate_of(state), model.q_e)
-    hardening = hardening_state(model, state, phase(model, state.temperature))
-    F = math.tanh(model.alpha * (hardening.threshold / hardening.saturation)) / math.tanh(model.alpha)
-    voce = hardening.initial_rate * (1.0 - F) + model.theta_IV * F
-    return state.shear_modulus / model.mu_0 * scaling(activated, model.p_e) * voce
-
-
-@inline
 def scaling_slope(activated: float, p: float, q: float, reference_rate: float, rate: float) -> float:
     """Derivative of the scaling factor by the strain rate."""
     if activated <= 0.0 or activated >= 1.0:
@@ -199,16 +160,107 @@ def scaling_slope(activated: float, p: float, q: float, reference_rate: float, r
     return chain * (1.0 - activated) ** (1.0 / p - 1.0)
 
 
+class InStep(NamedTuple):
+    """The law at the rate, temperature and shear modulus of a step."""
+
+    model: MechanicalThresholdStress
+    evolving: float
+    """Scaling factor S_e of the threshold stress."""
+    evolving_slope: float
+    """Its derivative by the strain rate."""
+    intrinsic: float
+    """S_i sigma_i."""
+    intrinsic_slope: float
+    initial_rate: float
+    """theta_0, never negative."""
+    saturation: float
+    """sigma_es."""
+    softening: float
+    """mu / mu_0."""
+
+
+@implements(in_step, MechanicalThresholdStress)
+def _(model: MechanicalThresholdStress, state: PlasticityState) -> InStep:
+    rate, T = rate_of(state), state.temperature
+    constants = phase(model, T)
+    energy = model.koverbcubed * T / state.shear_modulus
+    activated = activation(energy / model.g_0e, model.edot_0e, rate, model.q_e)
+    intrinsic = intrinsic_slope = 0.0
+    if model.p_i > 0.0:
+        heat = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
+        intrinsic = scaling(heat, model.p_i) * constants.sigma_i
+        slope = scaling_slope(heat, model.p_i, model.q_i, model.edot_0i, rate)
+        intrinsic_slope = constants.sigma_i * slope
+    rate_part = model.a_1 * math.log(rate) + model.a_2 * math.sqrt(rate)
+    return InStep(
+        model,
+        scaling(activated, model.p_e),
+        scaling_slope(activated, model.p_e, model.q_e, model.edot_0e, rate),
+        intrinsic,
+        intrinsic_slope,
+        max(constants.a_0 + rate_part - constants.a_3 * T, 0.0),
+        constants.sigma_es0 * (rate / model.edot_es0) ** (energy / constants.g_0es),
+        state.shear_modulus / model.mu_0,
+    )
+
+
+@inline
+def threshold_of(law: InStep, state: PlasticityState) -> float:
+    """The threshold stress sigma_e."""
+    return threshold_stress(law.model, law.initial_rate, law.saturation, state.plastic_strain)
+
+
+@inline
+def stress_at(law: InStep, threshold: float) -> float:
+    """The flow stress with a threshold stress."""
+    return law.model.sigma_a + (law.evolving * threshold + law.intrinsic) * law.softening
+
+
+@inline
+def hardening_at(law: InStep, threshold: float) -> float:
+    """The slope by plastic strain, after Voce."""
+    F = math.tanh(law.model.alpha * (threshold / law.saturation)) / math.tanh(law.model.alpha)
+    voce = law.initial_rate * (1.0 - F) + law.model.theta_IV * F
+    return law.softening * law.evolving * voce
+
+
+@inline
+def rate_slope_at(law: InStep, threshold: float) -> float:
+    """The slope by strain rate with the threshold stress held."""
+    return (threshold * law.evolving_slope + law.intrinsic_slope) * law.softening
+
+
+@implements(response, InStep)
+def _(law: InStep, state: PlasticityState) -> Response:
+    threshold = threshold_of(law, state)
+    return Response(stress_at(law, threshold), hardening_at(law, threshold), rate_slope_at(law, threshold))
+
+
+@implements(flow_stress, InStep)
+def _(law: InStep, state: PlasticityState) -> float:
+    return stress_at(law, threshold_of(law, state))
+
+
+@implements(hardening_slope, InStep)
+def _(law: InStep, state: PlasticityState) -> float:
+    return hardening_at(law, threshold_of(law, state))
+
+
+@implements(rate_slope, InStep)
+def _(law: InStep, state: PlasticityState) -> float:
+    return rate_slope_at(law, threshold_of(law, state))
+
+
+@implements(flow_stress, MechanicalThresholdStress)
+def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
+    return flow_stress(in_step(model, state), state)
+
+
+@implements(hardening_slope, MechanicalThresholdStress)
+def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
+    return hardening_slope(in_step(model, state), state)
+
+
 @implements(rate_slope, MechanicalThresholdStress)
 def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
-    """Slope with the threshold stress held."""
-    rate = rate_of(state)
-    constants = phase(model, state.temperature)
-    energy = model.koverbcubed * state.temperature / state.shear_modulus
-    activated = activation(energy / model.g_0e, model.edot_0e, rate, model.q_e)
-    threshold = hardening_state(model, state, constants).threshold
-    slope = threshold * scaling_slope(activated, model.p_e, model.q_e, model.edot_0e, rate)
-    if model.p_i > 0.0:
-        activated = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
-        slope += constants.sigma_i * scaling_slope(activated, model.p_i, model.q_i, model.edot_0i, rate)
-    return slope * (state.shear_modulus / model.mu_0)
+    return rate_slope(in_step(model, state), state)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from solver.declare import model
 from solver.dispatch import implements, inline
-from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
+from solver.materials.flow_stress import flow_stress, response
 from solver.materials.plasticity_state import PlasticityState, at_plastic_strain
 from solver.materials.return_algorithm import PlasticReturn, PlasticTrial, return_to_yield
 from solver.tensor import norm
@@ -42,14 +42,14 @@ def radial_return(
     multiplier = state.strain_rate * dt / math.sqrt(two_thirds)
     current = at_plastic_strain(state, state.plastic_strain, state.strain_rate)
     for _ in range(MOST_ITERATIONS):
-        sigma_y = flow_stress(flow_model, current)
-        excess = trial_norm - math.sqrt(two_thirds) * sigma_y - 2.0 * trial.stiffness * multiplier
-        hardening = rate_slope(flow_model, current) / dt + hardening_slope(flow_model, current)
+        at = response(flow_model, current)
+        excess = trial_norm - math.sqrt(two_thirds) * at.flow_stress - 2.0 * trial.stiffness * multiplier
+        hardening = at.rate_slope / dt + at.hardening_slope
         change = excess / (two_thirds * hardening + 2.0 * trial.stiffness)
         multiplier += change
         strain = max(math.sqrt(two_thirds) * multiplier, 0.0)
         current = at_plastic_strain(state, state.plastic_strain + strain, strain / dt)
-        if abs(change) < tolerance or abs(excess) <= STRESS_TOLERANCE * sigma_y:
+        if abs(change) < tolerance or abs(excess) <= STRESS_TOLERANCE * at.flow_stress:
             break
     direction = trial.stress_deviator / trial_norm
     return PlasticReturn(
