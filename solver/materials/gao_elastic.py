@@ -29,7 +29,8 @@ class GaoElasticState(NamedTuple):
 class GaoElastic(NamedTuple):
     """hypo_elastic for the rate of deformation less alpha c' I, with the concentration c.
 
-    Gao and Zhou, J. Appl. Phys. 109 (2011); Uintah once had this model, and no longer does.
+    Gao and Zhou, J. Appl. Phys. 109 (2011); Uintah once had this model, and no longer does. Like
+    hypo_elastic it does not turn the stress with the material: large rotations need another model.
     """
 
     bulk_modulus: Annotated[float, Parameter("bulk modulus", unit="Pa", gt=0.0)]

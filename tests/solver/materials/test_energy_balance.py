@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import test_arenisca
 import test_arruda_boyce
+import test_cam_clay
 import test_cnh_mms
 import test_comp_mooney_rivlin
 import test_comp_neo_hook
@@ -20,9 +21,12 @@ import test_maxwell_weichert
 import test_mohr_coulomb
 import test_murnaghan_mpm
 import test_mw_visco_elastic
+import test_nonlocal_drucker_prager
 import test_p_alpha
 import test_program_burn
 import test_soil_foam
+import test_svk
+import test_swelling
 import test_th_water
 import test_trans_iso_hyper
 import test_ucnh_var
@@ -84,6 +88,11 @@ CASES = {
     "hypo_elastic": Case(test_hypo_elastic.MODEL),
     "hyperelastic_plastic": Case(test_hyperelastic_plastic.LINEAR, COPPER, 0.3),
     "hyperelastic_plastic johnson_cook": Case(test_hyperelastic_plastic.JC, COPPER, 0.3),
+    "SVK": Case(test_svk.RUBBER),
+    "camclay": Case(test_cam_clay.clay(), scale=0.05, squeeze=0.05),
+    "gao_elastic": Case(test_swelling.GaoElastic(test_swelling.K, test_swelling.G, test_swelling.BETA)),
+    "nonlocal_drucker_prager": Case(test_nonlocal_drucker_prager.rock(), scale=0.05),
+    "rf_elastic_plastic": Case(test_swelling.silicon(test_swelling.PLASTIC), scale=0.3),
     "ideal_gas": Case(test_ideal_gas.GAS, test_ideal_gas.AIR),
     "jwlpp_mpm": Case(test_jwlpp_mpm.MODEL, test_jwlpp_mpm.HE, 0.1, 2.0e-8, squeeze=0.05),
     "murnaghanMPM": Case(test_murnaghan_mpm.MODEL._replace(viscosity=0.0)),
@@ -110,6 +119,7 @@ TRANSVERSE = {"trans_iso_hyper", "visco_trans_iso_hyper"}
 NOT_OBJECTIVE = {
     "MohrCoulomb",
     "MohrCoulomb strong",
+    "gao_elastic",
     "hypo_elastic",
     "mw_visco_elastic",
     "soil_foam",
@@ -191,6 +201,7 @@ HYPERELASTIC = {
     "UCNHVar",
     "cnh_mms",
     "comp_mooney_rivlin",
+    "SVK",
     "comp_neo_hook",
     "ideal_gas",
     "murnaghanMPM",
