@@ -114,9 +114,15 @@ def rate_of(state: PlasticityState) -> float:
 
 
 @inline
+def root(x: float, degree: float) -> float:
+    """x^(1/degree); a degree of 1, which is common, costs nothing."""
+    return x if degree == 1.0 else x ** (1.0 / degree)
+
+
+@inline
 def activation(thermal_energy: float, reference_rate: float, rate: float, q: float) -> float:
     """The activation term (k T / (g_0 b^3 mu) ln(reference / rate))^(1/q); none above the reference rate."""
-    return max(thermal_energy * math.log(reference_rate / rate), 0.0) ** (1.0 / q)
+    return root(max(thermal_energy * math.log(reference_rate / rate), 0.0), q)
 
 
 @inline
@@ -124,7 +130,7 @@ def scaling(activated: float, p: float) -> float:
     """The scaling factor S = (1 - activation)^(1/p), zero where heat alone overcomes the barriers."""
     if activated >= 1.0:
         return 0.0
-    return (1.0 - activated) ** (1.0 / p)
+    return root(1.0 - activated, p)
 
 
 @inline
@@ -164,13 +170,14 @@ class InStep(NamedTuple):
     """The law at the rate, temperature and shear modulus of a step."""
 
     model: MechanicalThresholdStress
+    rate: float
     evolving: float
     """Scaling factor S_e of the threshold stress."""
-    evolving_slope: float
-    """Its derivative by the strain rate."""
+    evolving_activated: float
     intrinsic: float
     """S_i sigma_i."""
-    intrinsic_slope: float
+    intrinsic_activated: float
+    sigma_i: float
     initial_rate: float
     """theta_0, never negative."""
     saturation: float
@@ -184,20 +191,20 @@ def _(model: MechanicalThresholdStress, state: PlasticityState) -> InStep:
     rate, T = rate_of(state), state.temperature
     constants = phase(model, T)
     energy = model.koverbcubed * T / state.shear_modulus
-    activated = activation(energy / model.g_0e, model.edot_0e, rate, model.q_e)
-    intrinsic = intrinsic_slope = 0.0
+    evolving = activation(energy / model.g_0e, model.edot_0e, rate, model.q_e)
+    strength = intrinsic = 0.0
     if model.p_i > 0.0:
-        heat = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
-        intrinsic = scaling(heat, model.p_i) * constants.sigma_i
-        slope = scaling_slope(heat, model.p_i, model.q_i, model.edot_0i, rate)
-        intrinsic_slope = constants.sigma_i * slope
+        intrinsic = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
+        strength = scaling(intrinsic, model.p_i) * constants.sigma_i
     rate_part = model.a_1 * math.log(rate) + model.a_2 * math.sqrt(rate)
     return InStep(
         model,
-        scaling(activated, model.p_e),
-        scaling_slope(activated, model.p_e, model.q_e, model.edot_0e, rate),
+        rate,
+        scaling(evolving, model.p_e),
+        evolving,
+        strength,
         intrinsic,
-        intrinsic_slope,
+        constants.sigma_i,
         max(constants.a_0 + rate_part - constants.a_3 * T, 0.0),
         constants.sigma_es0 * (rate / model.edot_es0) ** (energy / constants.g_0es),
         state.shear_modulus / model.mu_0,
@@ -227,7 +234,12 @@ def hardening_at(law: InStep, threshold: float) -> float:
 @inline
 def rate_slope_at(law: InStep, threshold: float) -> float:
     """The slope by strain rate with the threshold stress held."""
-    return (threshold * law.evolving_slope + law.intrinsic_slope) * law.softening
+    model, rate = law.model, law.rate
+    slope = threshold * scaling_slope(law.evolving_activated, model.p_e, model.q_e, model.edot_0e, rate)
+    if model.p_i > 0.0:
+        intrinsic = scaling_slope(law.intrinsic_activated, model.p_i, model.q_i, model.edot_0i, rate)
+        slope += law.sigma_i * intrinsic
+    return slope * law.softening
 
 
 @implements(response, InStep)
