@@ -251,6 +251,16 @@ def _floor_lanes(context: Any, a: Any) -> Any:
 
 
 @intrinsic
+def _add_scaled_lanes(context: Any, total: Any, part: Any, factor: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        kind = ir.FunctionType(VECTOR, [VECTOR] * 3)
+        fma = cgutils.get_or_insert_function(builder.module, kind, f"llvm.fma.v{WIDTH}f64")
+        return builder.call(fma, [args[1], _spread(builder, args[2]), args[0]])
+
+    return lanes_type(lanes_type, lanes_type, types.float64), generate
+
+
+@intrinsic
 def _lane(context: Any, a: Any, k: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return builder.extract_element(*args)
@@ -313,6 +323,11 @@ def _floor(a: Any) -> Any:
 @overload(operator.getitem, jit_options=INLINED, strict=False)
 def _get_lane(a: Any, k: Any) -> Any:
     return (lambda a, k: _lane(a, k)) if isinstance(a, LanesType) else None
+
+
+@overload(lanes.add_scaled, jit_options=INLINED, strict=False)
+def _add_scaled(total: Any, part: Any, factor: Any) -> Any:
+    return lambda total, part, factor: _add_scaled_lanes(total, part, factor)
 
 
 @overload(lanes.lanes_at, jit_options=INLINED, strict=False)

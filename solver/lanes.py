@@ -72,6 +72,11 @@ def above(a: Lanes | float, b: Lanes | float) -> Lanes:
     return Lanes(*(_numbers(a) > _numbers(b)))
 
 
+def add_scaled(total: Lanes, part: Lanes, factor: float) -> Lanes:
+    """The sum ``total + part * factor``, in kernels rounded once: the compiler has no choice where to fuse."""
+    return total + part * factor
+
+
 def lanes_at(rows: Any, row: Any, start: int) -> Lanes:
     """Eight numbers of a C-contiguous array (n, m), from ``rows[row, start]`` on; nothing is checked."""
     return Lanes(*rows[row, start : start + WIDTH].tolist())

@@ -22,7 +22,7 @@ from solver.interpolation.shape import (
     shape_functions,
 )
 from solver.interpolation.stencil import Corner, G, Stencil, W, corner, direction, separable, undeformed
-from solver.lanes import Lanes, every, lanes_at, put_lanes
+from solver.lanes import Lanes, add_scaled, every, lanes_at, put_lanes
 from solver.particles import Particles
 from solver.tensor import Tensor
 
@@ -66,8 +66,8 @@ class NodeWeights(NamedTuple):
 def at_node(grid: GridIndex, at: Corner, a: int, b: int, c: int, factors: Any, lane: int) -> NodeWeights:
     """The node a, b, c = 0 or 1 after the first in x, y, z.
 
-    Products are taken in Uintah's order, and nodes visited with z fastest, as there: so even the rounding noise of
-    bodies that are not strained yet agrees.
+    Products are taken and fused in Uintah's order, and nodes visited with z fastest, as there: so even the rounding
+    noise of bodies that are not strained yet agrees.
     """
     wx, wy, wz = factors[W + a, lane], factors[8 + W + b, lane], factors[16 + W + c, lane]
     gx, gy, gz = factors[G + a, lane], factors[8 + G + b, lane], factors[16 + G + c, lane]
@@ -94,11 +94,11 @@ def _(
                 if low[1] <= at.j + b < high[1] and low[2] <= at.k + c < high[2]:
                     n = at_node(grid, at, a, b, c, room.factors, lane)
                     sums.touched[n.node] = 1
-                    put_lanes(rows, n.node, 0, lanes_at(rows, n.node, 0) + content.plain * n.S)
-                    more = (
-                        content.by_x * n.gx + content.by_y * n.gy + content.by_z * n.gz + content.mixed * n.S
-                    )
-                    put_lanes(rows, n.node, 8, lanes_at(rows, n.node, 8) + more)
+                    plain = add_scaled(lanes_at(rows, n.node, 0), content.plain, n.S)
+                    put_lanes(rows, n.node, 0, plain)
+                    by_G = add_scaled(content.by_x * n.gx, content.by_y, n.gy)
+                    mixed = add_scaled(add_scaled(by_G, content.by_z, n.gz), content.mixed, n.S)
+                    put_lanes(rows, n.node, 8, lanes_at(rows, n.node, 8) + mixed)
 
 
 @implements(gather, Linear)
@@ -112,10 +112,10 @@ def _(
             for c in range(2):
                 n = at_node(grid, at, a, b, c, room.factors, lane)
                 row = lanes_at(rows, n.node, 0)
-                value = value + row * n.S
-                by_x = by_x + row * n.gx
-                by_y = by_y + row * n.gy
-                by_z = by_z + row * n.gz
+                value = add_scaled(value, row, n.S)
+                by_x = add_scaled(by_x, row, n.gx)
+                by_y = add_scaled(by_y, row, n.gy)
+                by_z = add_scaled(by_z, row, n.gz)
     return Gathered(value, by_x, by_y, by_z)
 
 
