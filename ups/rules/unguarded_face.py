@@ -20,7 +20,8 @@ class UnguardedFace(Rule):
 
     **Why.** Through a face without a condition particles leave the grid, and are deleted there, as if nothing
     were. A problem in a plane, one cell thick, needs ``Symmetric`` on both faces of its thickness: without, the
-    body is free to swell out of the plane and is in neither plane strain nor plane stress.
+    body is free to swell out of the plane and is in neither plane strain nor plane stress. Of an axisymmetric
+    problem z is the angle, and needs nothing.
 
     **Example.** A grid of 100 x 100 x 1 cells, bodies through all of its thickness, and no ``<Face side="z-">``.
 
@@ -45,7 +46,7 @@ class UnguardedFace(Rule):
             return
         given = {side for face in faces if face.children for side in _sides(face)}
         periodic = periodic_axes(deck)
-        for axis in range(3):
+        for axis in range(2 if deck.switch("MPM/axisymmetric") else 3):
             if not periodic[axis]:
                 free = [side for side in ("-", "+") if f"{'xyz'[axis]}{side}" not in given]
                 yield from self._check_axis(deck, domain, axis, free)

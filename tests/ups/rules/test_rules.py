@@ -225,6 +225,7 @@ GOOD = [
     on_face("[0.0, 0.0, 0.0]"),
     deck(saves=("p.x", "g.mass", "p.velocity", "KineticEnergy", "p.scalefactor")),
     deck(materials=LEFT.replace("<density>", "<melt_temp>2000</melt_temp><density>")),
+    deck(flags="<axisymmetric>true</axisymmetric>").replace(NO_SYMMETRY, ""),
 ]
 
 
