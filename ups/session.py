@@ -165,10 +165,6 @@ def resume_run(
 
 def _plan(deck: Deck) -> tuple[Specification, Plan]:
     """The values of a deck that can be run, and what it saves."""
-    if deck.specification is None and not deck.diagnostics.has_errors:
-        root = deck.document.root
-        message = "this program runs decks of the material point method (mpm) only"
-        deck.diagnostics.error("UPS412", message, root and (root.get("SimulationComponent") or root))
     specification = deck.require()
     plan = plan_output(specification, deck.reader.place, deck.diagnostics)
     return deck.require(), plan

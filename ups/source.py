@@ -69,7 +69,9 @@ def load_source(path: str | os.PathLike[str], diagnostics: Diagnostics) -> Sourc
             data = stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        diagnostics.error("UPS001", f"cannot read {name}: {reason}", at)
+        is_archive = (Path(path) / "index.xml").is_file()
+        suggestion = f"an archive; to go on with its run: ups run --restart {name}" if is_archive else None
+        diagnostics.error("UPS001", f"cannot read {name}: {reason}", at, suggestion)
         return None
     if len(data) > MAX_BYTES:
         diagnostics.error("UPS007", f"{name} is larger than {MAX_BYTES // 1024**2} MiB: not a deck", at)
