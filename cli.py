@@ -661,6 +661,14 @@ def _step(context: click.Context, option: click.Parameter, given: str) -> int:
         raise click.BadParameter(f"{given!r} is neither the number of a step nor 'last'") from None
 
 
+def _rising(
+    context: click.Context, option: click.Parameter, given: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    if given is not None and not given[0] < given[1]:
+        raise click.BadParameter(f"{given[0]:g} is not below {given[1]:g}")
+    return given
+
+
 def _of_pictures(command: Callable[..., None]) -> Callable[..., None]:
     """Give a command the options that say what a picture shows."""
     for option in reversed(
@@ -675,7 +683,13 @@ def _of_pictures(command: Callable[..., None]) -> Callable[..., None]:
             ),
             click.option("--level", type=int, default=0, metavar="INDEX", help="Of a grid variable; 0."),
             click.option(
-                "--range", "limits", type=float, nargs=2, metavar="LOW HIGH", help="Of the colours."
+                "--range",
+                "limits",
+                type=float,
+                nargs=2,
+                metavar="LOW HIGH",
+                callback=_rising,
+                help="Of the colours.",
             ),
             click.option(
                 "--mirror",

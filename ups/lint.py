@@ -102,6 +102,9 @@ def lint_files(
     """
     decks = list(find_decks(paths))
     result = LintResult(decks=len(decks))
+    if not decks:
+        message = f"there is nothing to check: no file in these folders ends in {DECK_SUFFIX}"
+        result.diagnostics.warning("UPS001", message, None)
     for found, sources in _lint_all(decks, jobs):
         _add(result, found, sources, tuple(select), tuple(ignore))
     return result

@@ -207,7 +207,9 @@ def _read_table(path: Path, steps: int) -> StrainPath:
     except OSError as problem:
         _refuse("UPS408", f"{path}: {problem.strerror or problem}")
     except ValueError as problem:
-        _refuse("UPS203", f"{path}: {problem}")
+        _refuse(
+            "UPS203", f"{path}: {problem}", "a row is a time and nine components of F; # begins a comment"
+        )
     if rows.shape[1:] != (10,):
         _refuse(
             "UPS207", f"{path}: each row is a time and nine components of F, here {rows.shape[-1]} numbers"
@@ -275,7 +277,7 @@ def print_history(history: PointHistory, rows: int = 11, file: TextIO | None = N
         shown["plastic strain"] = history.plastic_strain
     table = Table(*shown)
     for row in np.unique(np.linspace(0, len(history.time) - 1, rows).round().astype(int)):
-        table.add_row(*(f"{values[row]:.5g}" for values in shown.values()))
+        table.add_row(*(f"{values[row] + 0.0:.5g}" for values in shown.values()))
     Console(file=file).print(table)
 
 

@@ -201,7 +201,9 @@ def compilation_notice(stream: TextIO | None = None) -> Iterator[None]:
             now = time.monotonic()
             if not self.kernels:
                 self.started = self.shown = now
-                print("compiling kernels (first run of these models on this machine) ...", file=out, flush=True)
+                print(
+                    "compiling kernels (first run of these models on this machine) ...", file=out, flush=True
+                )
             self.kernels += 1
             if now - self.shown > SECONDS_BETWEEN_LINES:
                 self.shown = now

@@ -276,6 +276,8 @@ def test_a_deck_of_another_method(tmp_path: Path) -> None:
         "run", write(tmp_path, deck().replace('type="mpm"', 'type="impm"')), "--output", tmp_path / "a"
     )
     assert done.exit_code == 1
-    assert "error[UPS412]: impm: the implicit material point method: this program does not run it" in done.stderr
+    assert (
+        "error[UPS412]: impm: the implicit material point method: this program does not run it" in done.stderr
+    )
     assert done.stderr.count("UPS412") == 1
     assert "blocks.ups:4:" in done.stderr

@@ -292,3 +292,11 @@ def test_the_decks_that_uintah_runs_have_no_errors(monkeypatch):
         if d.severity.value == "error"
     }
     assert wrong == set()
+
+
+@pytest.mark.parametrize("form", ["text", "json", "github", "sarif"])
+def test_a_folder_without_decks_is_said_to_be_empty(tmp_path, form):
+    (tmp_path / "notes.txt").write_text("no deck")
+    said, status = lint_command([tmp_path], LintOptions(form=form))
+    assert "ends in .ups" in said
+    assert status == 0

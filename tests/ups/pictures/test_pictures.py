@@ -156,7 +156,7 @@ def test_pictures_of_the_command(make, tmp_path):
         assert (done.exit_code, done.output) == (0, f"{out}\n")
         with Image.open(out) as picture:
             assert picture.size[0] == width
-    for wrong in (["--slice", "z"], ["--slice", "z=a"], ["--step", "first"], []):
+    for wrong in (["--slice", "z"], ["--slice", "z=a"], ["--step", "first"], ["--range", "5", "1"], []):
         arguments = ["plot", str(archive), *wrong, *(["-o", str(out)] if wrong else [])]
         assert CliRunner().invoke(main, arguments).exit_code == 2
 
