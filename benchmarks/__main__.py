@@ -24,7 +24,13 @@ STEPS, QUICK_STEPS = 20, 8
 
 @click.command()
 @click.option("--quick", is_flag=True, help="Two blocks only, in less than a minute.")
-@click.option("--particles", type=int, multiple=True, default=(64_000, 512_000), help="Sizes of the blocks.")
+@click.option(
+    "--particles",
+    type=int,
+    multiple=True,
+    default=(64_000, 512_000),
+    help="Sizes of the blocks; not with --quick.",
+)
 @click.option("--only", metavar="TEXT", default="", help="Cases whose name contains TEXT.")
 @click.option("--threads", type=click.IntRange(min=1), default=1, show_default=True)
 @click.option("--steps", type=click.IntRange(min=1), help="Steps of each case whose median is taken.")

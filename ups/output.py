@@ -174,7 +174,8 @@ class _Planner:
         lacking = sorted((asked or set()) - set(provided))
         if lacking:
             message = f"{save.label} is not there for material {', '.join(map(str, lacking))}: it is left out"
-            self.diagnostics.warning("UPS406", message, self._attribute(save, "material"))
+            advice = "it is stored for all materials together" if provided == (GLOBAL_MATERIAL,) else None
+            self.diagnostics.warning("UPS406", message, self._attribute(save, "material"), advice)
         chosen = set(provided) if asked is None else asked
         return tuple(m for m in provided if m in chosen or (before is not None and m in before.materials))
 
