@@ -350,6 +350,11 @@ class Simulation:
 
     def _project_all(self) -> None:
         """Project all bodies; the sums of one are on their way to other ranks while the next is projected."""
+        self.clock(Phase.GRID)
+        for m, active in enumerate(self._active):
+            nodes.forget(active, self._touched[m], self._fields[m])
+            if self.contact_laws and len(self.bodies) > 1:
+                nodes.forget_motion(active, self.nodal)
         on_their_way: deque[tuple[int, Callable[[], None]]] = deque()
         for m, body in enumerate(self.bodies):
             if len(on_their_way) == len(self._rows):
@@ -363,12 +368,11 @@ class Simulation:
     def _project(self, m: int, body: Body) -> None:
         """Sums over the particles of a body at the nodes: mass, momentum, forces, volume and heat."""
         rows, touched = self._sums_of(m)
-        self.clock(Phase.GRID)
-        nodes.forget(self._active[m], touched, self._fields[m])
-        if self.whole_grid:
-            touched[:] = 1
         self.clock(Phase.TO_GRID)
-        if self._is_active(body):
+        takes_part = self._is_active(body)
+        if self.whole_grid or not takes_part:  # particles that wait feel gravity, at nodes without mass
+            touched[:] = 1
+        if takes_part:
             self._scatter(m, body)
             if self.flags.gradient_enhanced_projection:
                 transfer.add_gradients(self.interpolator, self.grid.index, body.particles, rows)
@@ -493,7 +497,10 @@ class Simulation:
     def too_fast(self, dt: float) -> bool:
         """Whether a node inside the domain would cross half a cell in the last step's dt."""
         half = 0.25 * sum(h * h for h in self.grid.spacing)
-        fastest = max(nodes.fastest_node(v, self._inner_nodes) for v in self.nodal.velocity_star)
+        fastest = max(
+            nodes.fastest_node(active, v, self._inner_nodes)
+            for active, v in zip(self._active, self.nodal.velocity_star, strict=True)
+        )
         return largest_number(self.exchange.communicator, fastest) * dt * dt > half
 
     def _impose_velocities(self, dt: float) -> None:
@@ -513,8 +520,11 @@ class Simulation:
         if self.thermal_contact:
             capacity = np.array([body.material.specific_heat for body in self.bodies])
             nodes.exchange_heat(nodal.mass, nodal.temperature, capacity, dt, nodal.temperature_rate)
-        for m in range(len(self.bodies)):
+        for m, body in enumerate(self.bodies):
             star = self._temperature_star[m]
+            if not self._is_active(body):
+                star[:] = nodal.temperature_rate[m] = 0.0
+                continue
             nodes.warm_up(self._active[m], self._fields[m], dt, star)
             self.boundary_conditions.apply_temperature(star, m)
             nodes.rate_of_change(

@@ -87,6 +87,16 @@ def forget(active: Any, touched: Any, fields: NodalFields) -> None:
 
 
 @kernel
+def forget_motion(active: Any, nodal: NodalFields) -> None:
+    """Stop all materials at nodes that were active for one: contact moves those too that no particle touches."""
+    for m in range(nodal.mass.shape[0]):
+        for n in range(active.shape[0]):
+            i = active[n]
+            for c in range(3):
+                nodal.velocity[m, i, c] = nodal.velocity_star[m, i, c] = nodal.acceleration[m, i, c] = 0.0
+
+
+@kernel
 def normalise(rows: Any, active: Any, fields: NodalFields) -> None:
     """Split sums into nodal fields, v_i = momentum / mass and T_i = (mass T) / mass, and leave zeros behind."""
     for n in range(active.shape[0]):
@@ -174,10 +184,11 @@ def exchange_heat(mass: Any, temperature: Any, specific_heat: Any, dt: float, ra
 
 
 @kernel
-def fastest_node(velocity: Any, inner: Any) -> float:
-    """The largest |v|^2 over the nodes that ``inner`` marks."""
+def fastest_node(active: Any, velocity: Any, inner: Any) -> float:
+    """The largest |v|^2 over the active nodes that ``inner`` marks."""
     largest = 0.0
-    for i in range(velocity.shape[0]):
+    for n in range(active.shape[0]):
+        i = active[n]
         if inner[i]:
             v2 = velocity[i, 0] ** 2 + velocity[i, 1] ** 2 + velocity[i, 2] ** 2
             largest = max(largest, v2)

@@ -293,8 +293,10 @@ def test_materials_in_thermal_contact_reach_one_temperature_and_keep_their_heat(
 
 def test_fastest_node():
     velocity = np.array([[3.0, 4.0, 0.0], [10.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    assert nodes.fastest_node(velocity, np.array([True, False, True])) == 25.0
-    assert nodes.fastest_node(velocity, np.zeros(3, dtype=np.bool_)) == 0.0
+    every, inner = np.arange(3, dtype=np.uintp), np.array([True, False, True])
+    assert nodes.fastest_node(every, velocity, inner) == 25.0
+    assert nodes.fastest_node(every[2:], velocity, inner) == 1.0
+    assert nodes.fastest_node(every, velocity, np.zeros(3, dtype=np.bool_)) == 0.0
 
 
 def test_images_add_to_their_owners_and_follow_them():

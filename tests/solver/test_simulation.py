@@ -19,6 +19,7 @@ from mpm_cases import (
 )
 from scipy.special import erfc
 
+from solver.contact.nodal_svf import NodalVolumeFraction
 from solver.contact.single_velocity import SingleVelocity
 from solver.materials.rigid import Rigid
 from solver.particles import keep
@@ -357,6 +358,71 @@ def test_a_body_that_is_not_active_neither_weighs_nor_pushes():
     assert simulation.reductions["TotalMass", 1] < 1e-100
     advance(simulation, 0.2, 20)
     assert simulation.reductions["TotalMass", 1] == pytest.approx(simulation.bodies[1].particles.mass.sum())
+
+
+@pytest.mark.parametrize("waiting", [0, 1])
+@pytest.mark.parametrize("flags", [{}, {"XPIC2": True}])
+def test_a_body_that_waits_where_another_moves_is_not_carried_along(waiting, flags):
+    """It is in free fall, as in Uintah; its nodes hold no mass, so nothing of the other's motion is to be seen."""
+    grid = make_grid((8, 8, 4))
+    bodies = [block(grid, (1, 4, 1), (3, 6, 3), m, (0.1, 0.0, 0.0)) for m in (0, 1)]
+    bodies[waiting].particles.velocity[:] = 0.0
+    bodies[waiting].activation_time = 10.0
+    start = bodies[waiting].particles.position.copy()
+    simulation = make_simulation(grid, bodies, gravity=(0.0, -0.01, 0.0), flags=flags)
+    advance(simulation, 0.2, 10)
+    moved = bodies[waiting].particles.position - start
+    np.testing.assert_allclose(moved[:, [0, 2]], 0.0, atol=1e-14)
+    assert (moved[:, 1] <= 0.0).all()
+    assert (moved[:, 1] > -0.025).all()
+    np.testing.assert_allclose(bodies[1 - waiting].particles.velocity[:, 0], 0.1, rtol=1e-12)
+
+
+def test_a_body_that_waits_keeps_its_temperature():
+    """Neither what is in its place nor a face warms it: at its nodes there is no mass to have a temperature."""
+    grid = make_grid((6, 4, 4))
+    bodies = [block(grid, (1, 1, 1), (3, 3, 3), 0), block(grid, (0, 1, 1), (2, 3, 3), 1)]
+    bodies[0].particles.temperature[:] = 400.0
+    bodies[1].activation_time = 10.0
+    simulation = make_simulation(
+        grid,
+        bodies,
+        regions=[whole_side("x-", "Temperature", "Dirichlet", 350.0)],
+        thermal_contact=True,
+    )
+    advance(simulation, 0.1, 3)
+    np.testing.assert_array_equal(bodies[1].particles.temperature, MATERIAL.room_temperature)
+    np.testing.assert_allclose(bodies[0].particles.temperature, 400.0)
+
+
+@pytest.mark.parametrize("use_svf", [True, False])
+def test_drag_at_nodes_of_one_material_alone_does_not_pile_up(use_svf):
+    """Where the other has no mass its velocity means nothing, and must not grow from step to step."""
+    grid = make_grid((10, 4, 4))
+    bodies = [
+        block(grid, (1, 1, 1), (3, 3, 3), 0, (0.001, 0.0, 0.0)),
+        block(grid, (6, 1, 1), (8, 3, 3), 1),
+    ]
+    drag = NodalVolumeFraction(myu=1e3, use_svf=use_svf)
+    simulation = make_simulation(grid, bodies, contact_laws=[drag])
+    advance(simulation, 0.1, 150)
+    np.testing.assert_allclose(bodies[0].particles.velocity[:, 0], 0.001, rtol=1e-10)
+    assert abs(simulation.nodal.velocity_star).max() < 1.0
+
+
+def test_only_nodes_with_particles_are_too_fast():
+    """A motion that is imposed on the whole grid is fast far from the body, where there is nothing to move."""
+    grid = make_grid((4, 4, 40))
+    body = block(grid, (1, 1, 1), (3, 3, 3))
+
+    def impose(simulation, dt):
+        simulation.nodal.velocity_star[0] = simulation.node_positions * 0.1
+
+    simulation = make_simulation(
+        grid, [body], flags={"restart_on_large_nodal_velocity": True}, after_boundary_conditions=[impose]
+    )
+    advance(simulation, 0.25, 4)
+    assert simulation.step_number == 4
 
 
 def test_particles_that_leave_take_their_state_along():
