@@ -17,7 +17,7 @@ from solver.flags import Flags
 from solver.grid import Grid, Patch, Window
 from solver.interpolation import INTERPOLATOR
 from solver.loads.loads import Loads
-from solver.materials.constitutive import initialize, state_record
+from solver.materials.constitutive import initialize, is_coupled, state_record
 from solver.materials.damage import for_constitutive_model, initialize_damage
 from solver.materials.erosion import lets_fail
 from solver.materials.failure import Failure, new_failure
@@ -318,6 +318,9 @@ class _Builder:
             "cohesive zones": self.flags.use_cohesive_zones,
             "scalar diffusion": self.flags.scalar_diffusion,
             "failed particles that become another material": bool(self.spec.conversions),
+            "particles that feel each other beyond the nodes they share": any(
+                is_coupled(material.constitutive_model) for material in self.spec.materials
+            ),
         }
         for what, wanted in asked.items():
             if wanted and self.communicator.size > 1:

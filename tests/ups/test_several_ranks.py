@@ -6,11 +6,14 @@ from pathlib import Path
 
 import pytest
 from agreement import disagreement
+from model_samples import SAMPLES as MODEL_SAMPLES
 from small_decks import HYPO, SAVES, deck, material, write
-from thread_ranks import on_ranks
+from thread_ranks import Team, ThreadRank, on_ranks
 
 from ups.archive import Archive
 from ups.deck import read_deck
+from ups.diagnostics import DeckError
+from ups.factory import build
 from ups.session import resume_run, run_deck
 
 ROUNDING = 1e-12
@@ -56,6 +59,11 @@ BRITTLE = (
       <failure_distrib>uniform</failure_distrib><failure_std>1e5</failure_std><failure_seed>3</failure_seed>
     </damage_model>
     <erosion algorithm="ZeroStress"/>"""
+)
+NONLOCAL = (
+    '<constitutive_model type="nonlocal_drucker_prager">'
+    + MODEL_SAMPLES["nonlocal_drucker_prager"]
+    + "</constitutive_model>"
 )
 BREAKING = TWO_BLOCKS.replace(HYPO, BRITTLE)
 WAITING = TWO_BLOCKS.replace("</geom_object>", "<color>1</color></geom_object>", 1)
@@ -139,6 +147,17 @@ def test_several_ranks_give_what_one_gives(case: str, tmp_path: Path) -> None:
     on_ranks(ranks, lambda rank: run_deck(read_deck(path), output=tmp_path / "many.uda", communicator=rank))
     found = disagreement(tmp_path / "one.uda", tmp_path / "many.uda")
     assert max(found.values()) < ROUNDING, found
+
+
+def test_a_material_whose_particles_feel_each_other_is_refused(tmp_path: Path) -> None:
+    """Its averages reach farther than the nodes that a rank holds, and would end at its edge."""
+    path = write(tmp_path, deck(materials=TWO_BLOCKS.replace(HYPO, NONLOCAL)))
+    build(read_deck(path))
+    with pytest.raises(DeckError) as refused:
+        build(read_deck(path), ThreadRank(Team(2), 0))
+    (diagnostic,) = refused.value.diagnostics
+    assert diagnostic.code == "UPS412"
+    assert "feel each other" in diagnostic.message
 
 
 def test_domains_follow_particles_that_move(tmp_path: Path) -> None:
