@@ -79,7 +79,7 @@ class Body:
     rigid : moves as contact tells it and carries no stress.
     transmits_force : feels no acceleration of its own (Uintah's force-transmitting material).
     activation_time : before this time the body neither weighs nor pushes.
-    is_active : False keeps it out for good.
+    is_active : False keeps it out until ``activation_time``, and for good where that is zero.
     possible_alpha : whether contact may take its surface for the one that separates it from the others.
     """
 
@@ -101,6 +101,10 @@ class Body:
     def numeric_model(self) -> Any:
         """The model as kernels take it."""
         return numbers_only(self.model)
+
+    def takes_part(self, time: float) -> bool:
+        """Whether the body is on the grid in a step that begins at a time."""
+        return time >= self.activation_time and (self.is_active or self.activation_time > 0.0)
 
     def keep(self, kept: Array) -> None:
         """Drop the particles that a mask (n,) leaves out."""
@@ -345,9 +349,6 @@ class Simulation:
             specific_heat=body.material.specific_heat,
         )
 
-    def _is_active(self, body: Body) -> bool:
-        return body.is_active and self.time >= body.activation_time
-
     def _project_all(self) -> None:
         """Project all bodies; the sums of one are on their way to other ranks while the next is projected."""
         self.clock(Phase.GRID)
@@ -369,7 +370,7 @@ class Simulation:
         """Sums over the particles of a body at the nodes: mass, momentum, forces, volume and heat."""
         rows, touched = self._sums_of(m)
         self.clock(Phase.TO_GRID)
-        takes_part = self._is_active(body)
+        takes_part = body.takes_part(self.time)
         if self.whole_grid or not takes_part:  # particles that wait feel gravity, at nodes without mass
             touched[:] = 1
         if takes_part:
@@ -473,7 +474,7 @@ class Simulation:
         To be called before particles move, as ``after_boundary_conditions`` are.
         """
         body = self.bodies[m]
-        if body.rigid or not self._is_active(body):
+        if body.rigid or not body.takes_part(self.time):
             return np.zeros((self.grid.number_of_nodes, 3, 3))
         sums = project_stress(self, body)
         self.exchange.add(sums)()
@@ -522,7 +523,7 @@ class Simulation:
             nodes.exchange_heat(nodal.mass, nodal.temperature, capacity, dt, nodal.temperature_rate)
         for m, body in enumerate(self.bodies):
             star = self._temperature_star[m]
-            if not self._is_active(body):
+            if not body.takes_part(self.time):
                 star[:] = nodal.temperature_rate[m] = 0.0
                 continue
             nodes.warm_up(self._active[m], self._fields[m], dt, star)
@@ -678,7 +679,7 @@ class Simulation:
             force, volume = np.zeros(3), 0.0
             chosen = np.flatnonzero(on_face(self.grid, face) & self.exchange.counted)
             for m, body in enumerate(self.bodies):
-                if not body.rigid and self._is_active(body):
+                if not body.rigid and body.takes_part(self.time):
                     force -= self.nodal.internal_force[m][chosen].sum(axis=0)
                 volume += float(self.nodal.volume[m][chosen].sum())
             self.reductions["BndyForce_" + name, -1] = force

@@ -229,7 +229,9 @@ class MaterialSection:
         float, Parameter("coefficient of linear thermal expansion", unit="1/K", ge=0.0)
     ] = 0.0
     is_rigid: Annotated[bool, Parameter("moves as contact tells it, without stress")] = False
-    is_active: Annotated[bool, Parameter("takes part from the start")] = True
+    is_active: Annotated[
+        bool, Parameter("takes part from the start; if not, from activation_time where it is given")
+    ] = True
     activation_time: Annotated[float, Parameter("time from which it takes part", unit="s")] = 0.0
     is_force_transmitting_material: Annotated[bool, Parameter("hands forces on")] = False
     possible_alpha_material: Annotated[

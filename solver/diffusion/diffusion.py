@@ -105,7 +105,7 @@ class Diffusion:
         from solver.diffusion.kernels.transfer import SUMS, concentration_to_grid
 
         sums = np.zeros((simulation.grid.number_of_nodes, SUMS))
-        if takes_part(simulation, body):
+        if body.takes_part(simulation.time):
             concentration_to_grid(
                 simulation.interpolator,
                 simulation.grid.index,
@@ -126,7 +126,7 @@ class Diffusion:
 
         law = self.laws[m]
         sums = np.zeros((simulation.grid.number_of_nodes, 1))
-        if not takes_part(simulation, body):
+        if not body.takes_part(simulation.time):
             return sums[:, 0]
         largest = fluxes_to_grid(
             compiled_form(law),
@@ -154,7 +154,7 @@ class Diffusion:
         law, solute = self.laws[m], body.solute
         if hasattr(body.state, "concentration_rate"):
             body.state.concentration_rate[:] = (solute.concentration - solute.previous) / dt
-        if not takes_part(simulation, body):
+        if not body.takes_part(simulation.time):
             return
         concentration_to_particles(
             simulation.interpolator,
@@ -178,11 +178,6 @@ class Diffusion:
                 facing = load.normals(particles.position[carried]) * solute.area[carried]
                 area = np.sqrt((facing**2).sum(axis=1))
                 solute.external_rate[carried] += load.magnitude(time, 1) * area / particles.volume[carried]
-
-
-def takes_part(simulation: Simulation, body: Body) -> bool:
-    """Whether a body is on the grid in this step."""
-    return body.is_active and simulation.time >= body.activation_time
 
 
 def compiled_form(law: Any) -> Any:

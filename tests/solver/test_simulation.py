@@ -360,6 +360,25 @@ def test_a_body_that_is_not_active_neither_weighs_nor_pushes():
     assert simulation.reductions["TotalMass", 1] == pytest.approx(simulation.bodies[1].particles.mass.sum())
 
 
+@pytest.mark.parametrize(
+    ("is_active", "activation_time", "expected"),
+    [
+        (True, 0.0, [True, True]),
+        (True, 0.5, [False, True]),
+        (False, 0.5, [False, True]),
+        (False, 0.0, [False, False]),
+    ],
+)
+def test_a_body_takes_part_from_its_activation_time(is_active, activation_time, expected):
+    """Decks that insert particles say both: not active, and from when on it is."""
+    grid = make_grid((3, 3, 3))
+    body = block(grid, (1, 1, 1), (2, 2, 2), is_active=is_active, activation_time=activation_time)
+    assert [body.takes_part(time) for time in (0.0, 0.5)] == expected
+    simulation = make_simulation(grid, [body], time=0.5)
+    simulation.advance(0.1)
+    assert (simulation.reductions["TotalMass", 0] > 1.0) == expected[1]
+
+
 @pytest.mark.parametrize("waiting", [0, 1])
 @pytest.mark.parametrize("flags", [{}, {"XPIC2": True}])
 def test_a_body_that_waits_where_another_moves_is_not_carried_along(waiting, flags):
