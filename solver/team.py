@@ -35,15 +35,18 @@ class Team:
         return max(1, min(self.threads, particles // LEAST_PARTICLES))
 
     def run(self, tasks: Sequence[Callable[[], Any]]) -> None:
-        """Do all tasks, the first in the calling thread; what a task raises is raised here."""
+        """Do all tasks, the first in the calling thread; what a task raises is raised here, once all have ended."""
         if len(tasks) > 1 and self._pool is None:
             from concurrent.futures import ThreadPoolExecutor
 
             self._pool = ThreadPoolExecutor(self.threads - 1)
         others = [self._pool.submit(task) for task in tasks[1:]]
-        tasks[0]()
-        for other in others:
-            other.result()
+        try:
+            tasks[0]()
+        finally:
+            problems = [other.exception() for other in others]
+        for problem in filter(None, problems):
+            raise problem
 
     def share(self, count: int, members: int, task: Callable[[int, int], Any]) -> None:
         """Call ``task(first, last)`` for even parts of ``range(count)``, one for each of ``members`` threads."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -118,3 +119,21 @@ def test_a_fault_in_a_thread_is_raised_where_it_was_started():
 
     with pytest.raises(RuntimeError, match="no"):
         Team(2).share(10, 2, fail)
+
+
+def test_a_task_that_raises_is_told_once_all_have_ended():
+    """Nobody still writes to arrays that the caller then looks at."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def fails():
+        begun.wait(10.0)
+        raise ValueError("the first")
+
+    def works():
+        begun.set()
+        time.sleep(0.2)
+        ended.set()
+
+    with pytest.raises(ValueError, match="the first"):
+        Team(2).run([fails, works])
+    assert ended.is_set()
