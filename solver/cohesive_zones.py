@@ -206,6 +206,10 @@ class CohesiveZones:
         for axis in np.flatnonzero(self.grid.periodic):
             low, high = self.grid.anchor[axis], self.grid.upper[axis]
             positions[:, axis] = low + (positions[:, axis] - low) % (high - low)
+            cell = self.grid.cell_of(positions)[:, axis]
+            positions[(cell < 0) | (cell >= self.grid.cells[axis]), axis] = (
+                low  # a rounding error beyond a face
+            )
 
     def _nodes_about(self) -> tuple[Array, Array]:
         """The eight nodes of each zone's cell, (n, 8), and their trilinear weights.

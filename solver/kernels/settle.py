@@ -34,8 +34,8 @@ def settle(
             if periodic[c] and (q < 0.0 or q >= cells[c]):
                 wraps = math.floor(q / cells[c])
                 particles.position[p, c] -= wraps * cells[c] * grid.spacing[c]
-                q -= wraps * cells[c]
-                if q >= cells[c]:  # a rounding error below the lower face
+                q = (particles.position[p, c] - grid.anchor[c]) / grid.spacing[c]
+                if not 0.0 <= q < cells[c]:  # a rounding error beyond a face
                     particles.position[p, c] = grid.anchor[c]
                     q = 0.0
             i = math.floor(q)

@@ -562,6 +562,22 @@ def settled(positions, grid=BOX, owned=EVERYWHERE, least_mass=0.0, **values):
     return kept, particles
 
 
+@pytest.mark.parametrize(
+    ("anchor", "spacing", "cells", "x"),
+    [
+        (-2.302132862361297, 0.6405920704482397, 13, 6.0255640534658195),
+        (-2.302132862361297, 0.6405920704482397, 13, -10.629829778188414),
+        (3.1327023920027237, 0.026362359173243803, 2, 3.079977673656236),
+    ],
+)
+def test_particles_at_a_face_wrap_into_cells_of_the_domain(anchor, spacing, cells, x):
+    """What is taken off is rounded too; a particle an ulp outside would belong to no cell of any rank."""
+    grid = make_grid((cells, 3, 3), (spacing, 1.0, 1.0), (anchor, 0.0, 0.0), (0, 1, 1), (1, 0, 0))
+    kept, particles = settled([(x, 1.5, 1.5)], grid, np.ones(9 * cells, dtype=np.bool_))
+    assert kept.all()
+    assert 0 <= grid.cell_of(particles.position)[0, 0] < cells
+
+
 def test_particles_outside_the_domain_are_removed():
     inside = [(10.0, 0.0, -1.0), (13.999, 2.999, 0.999)]
     outside = [
