@@ -175,6 +175,7 @@ class Simulation:
             self.exchange = OneRank(self.grid)
         self.face_forces: dict[str, tuple[float, float, float]] = {}
         self._fault = ""
+        self._agreed_reach: int | None = None
         self._kinematics = stress.Kinematics(
             self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
         )
@@ -238,6 +239,8 @@ class Simulation:
             when the flags ask for it and a node is too fast for this step; the particles are as they were.
         """
         self.reductions.clear()
+        self.clock(Phase.EXCHANGE)
+        self.balance()
         self.clock(Phase.LOADS)
         for action in self.before_step:
             action(self, dt)
@@ -321,15 +324,18 @@ class Simulation:
         if status.fault:
             faults = self.exchange.communicator.allgather(self._fault)
             raise DivergedError(next(fault for fault in faults if fault))
-        self._follow(self.exchange.new_grid(status, self.bodies, self.step_number + 1))
+        self.exchange.deliver(self.bodies)
+        self._agreed_reach = status.reach
         return status.stable
 
     def balance(self) -> None:
-        """Let the ranks share out the particles evenly, before the first step."""
-        self._follow(self.exchange.new_grid(Status(math.inf, 0, False), self.bodies, self.step_number))
+        """Let the ranks share out the particles evenly, and hold all nodes that these reach.
 
-    def _follow(self, grid: Grid | None) -> None:
-        """Go on with another window of the grid, if there is one."""
+        Done at the start of steps, so that nodal values of the step before can still be written.
+        """
+        if self._agreed_reach is None:
+            self._agreed_reach = int(largest_number(self.exchange.communicator, self._reach()))
+        grid = self.exchange.new_grid(self._agreed_reach, self.bodies, self.step_number)
         if grid is not None:
             self.grid = grid
             self.boundary_conditions = self.boundary_conditions.on(grid)

@@ -86,7 +86,10 @@ class Exchange(Protocol):
     def conclude(self, status: Status, sums: dict[Any, Any]) -> Status:
         """End a step: add up ``sums`` (numbers and arrays by key) in place, and agree on the status."""
 
-    def new_grid(self, status: Status, bodies: Sequence[HasRecords], step: int) -> Grid | None:
+    def deliver(self, bodies: Sequence[HasRecords]) -> None:
+        """Send particles that left for ranks that are no neighbours."""
+
+    def new_grid(self, reach: int, bodies: Sequence[HasRecords], step: int) -> Grid | None:
         """The grid to go on with after a step, where the window of this rank has to change."""
 
 
@@ -138,7 +141,10 @@ class OneRank:
         """There is nobody to agree with."""
         return status
 
-    def new_grid(self, status: Status, bodies: Sequence[HasRecords], step: int) -> Grid | None:
+    def deliver(self, bodies: Sequence[HasRecords]) -> None:
+        """There is nowhere to go."""
+
+    def new_grid(self, reach: int, bodies: Sequence[HasRecords], step: int) -> Grid | None:
         """The grid stays."""
         return None
 
@@ -280,16 +286,19 @@ class ManyRanks:
         worst = self.communicator.largest(np.array([-status.stable, status.reach, status.fault], float))
         return Status(-float(worst[0]), int(worst[1]), bool(worst[2]))
 
-    def new_grid(self, status: Status, bodies: Sequence[HasRecords], step: int) -> Grid | None:
-        """Widen the halo where particles reach beyond it, and cut domains anew where they are out of balance."""
+    def deliver(self, bodies: Sequence[HasRecords]) -> None:
+        """Send particles to all ranks, if any rank has some that went far."""
         if self._far:
             self.deal(bodies)
+
+    def new_grid(self, reach: int, bodies: Sequence[HasRecords], step: int) -> Grid | None:
+        """Widen the halo where particles reach beyond it, and cut domains anew where they are out of balance."""
         domains = self.domains
         if step % BALANCE_EVERY == 0:
             domains = self._balanced(bodies)
-        if domains == self.domains and status.reach <= self.reach:
+        if domains == self.domains and reach <= self.reach:
             return None
-        self._place(self.grid, domains, max(status.reach, self.reach))
+        self._place(self.grid, domains, max(reach, self.reach))
         self.deal(bodies)
         return self.grid
 

@@ -149,6 +149,16 @@ def test_several_ranks_give_what_one_gives(case: str, tmp_path: Path) -> None:
     assert max(found.values()) < ROUNDING, found
 
 
+def test_nodal_values_are_written_in_steps_after_which_the_halo_grows(tmp_path: Path) -> None:
+    """Every step is written: among them those after which corners reach beyond the cells around a rank's."""
+    path = write(tmp_path, CASES["stretched"].replace(">40<", ">1<"))
+    (tmp_path / "stretch.txt").write_text(STRETCH)
+    run_deck(read_deck(path), output=tmp_path / "one.uda")
+    on_ranks(3, lambda rank: run_deck(read_deck(path), output=tmp_path / "many.uda", communicator=rank))
+    found = disagreement(tmp_path / "one.uda", tmp_path / "many.uda")
+    assert max(found.values()) < ROUNDING, found
+
+
 def test_a_material_whose_particles_feel_each_other_is_refused(tmp_path: Path) -> None:
     """Its averages reach farther than the nodes that a rank holds, and would end at its edge."""
     path = write(tmp_path, deck(materials=TWO_BLOCKS.replace(HYPO, NONLOCAL)))
