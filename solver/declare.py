@@ -54,6 +54,7 @@ class Parameter:
     source : where the value or its equation comes from.
     ignored : why the value is read and has no effect, if so.
     unsupported : what this program would need to run a deck that gives the value, if it does not run it.
+    not_run : those of the choices that are known, and not run.
     repeated : True for a tag that may be given several times, each with one value of the tuple.
     tag_attributes : attributes that the tag may carry besides its value.
     """
@@ -71,6 +72,7 @@ class Parameter:
     source: str = ""
     ignored: str = ""
     unsupported: str = ""
+    not_run: tuple[str, ...] = ()
     repeated: bool = False
     tag_attributes: tuple[str, ...] = ()
 

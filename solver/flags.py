@@ -12,14 +12,15 @@ IMPLICIT = "read by the implicit method only"
 class Flags:
     """Options of the material point method, with Uintah's defaults."""
 
-    time_integrator: Annotated[str, Parameter("how time is advanced", choices=("explicit", "implicit"))] = (
-        "explicit"
-    )
+    time_integrator: Annotated[
+        str, Parameter("how time is advanced", choices=("explicit", "implicit"), not_run=("implicit",))
+    ] = "explicit"
     interpolator: Annotated[
         str,
         Parameter(
             "shape functions between particles and nodes",
             choices=("linear", "gimp", "cpdi", "fast_cpdi", "cpti", "3rdorderBS", "4thorderBS"),
+            not_run=("4thorderBS",),
         ),
     ] = "linear"
     cpdi_lcrit: Annotated[
@@ -115,18 +116,25 @@ class Flags:
         str, Parameter("rows of time, color, displacement and velocity", tag="InsertParticlesFile")
     ] = ""
 
-    refine_particles: Annotated[bool, Parameter("split particles that grow too long")] = False
-    granular: Annotated[bool, Parameter("granular method", tag="DoGranularMPM")] = False
+    refine_particles: Annotated[
+        bool, Parameter("split particles that grow too long", unsupported="particles that split")
+    ] = False
+    granular: Annotated[
+        bool, Parameter("granular method", tag="DoGranularMPM", unsupported="the granular method")
+    ] = False
     manufactured_solution: Annotated[
         str,
         Parameter(
             "problem with a known solution to run",
             tag="RunMMSProblem",
             choices=("", "AxisAligned", "GeneralizedVortex", "ExpandingRing", "AxisAligned3L"),
+            unsupported="manufactured solutions",
         ),
     ] = ""
     scalar_diffusion: Annotated[bool, Parameter("diffuse a concentration", tag="do_scalar_diffusion")] = False
-    coupled_flow: Annotated[bool, Parameter("couple pore water", tag="coupled_flow_analysis")] = False
+    coupled_flow: Annotated[
+        bool, Parameter("couple pore water", tag="coupled_flow_analysis", unsupported="pore water")
+    ] = False
     amr: Annotated[bool, Parameter("several levels", tag="AMR")] = False
 
     delete_geometry_objects: Annotated[

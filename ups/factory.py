@@ -197,7 +197,6 @@ class _Builder:
         from solver.boundary_conditions import BoundaryConditions
         from solver.simulation import Simulation
 
-        self._refuse_unsupported()
         self._refuse_on_ranks()
         grid = self._part(self._grid())
         interpolator = self._interpolator(grid)
@@ -294,23 +293,6 @@ class _Builder:
         layers = int(largest_number(self.communicator, own))
         sees_neighbours = any(law.needs_surface for law in contact)
         return ManyRanks(self.communicator, grid, self.domains, layers, sees_neighbours=sees_neighbours)
-
-    def _refuse_unsupported(self) -> None:
-        flags = self.flags
-        asked = {
-            "time_integrator implicit": flags.time_integrator != "explicit",
-            "interpolator 4thorderBS": flags.interpolator == "4thorderBS",
-            "refine_particles": flags.refine_particles,
-            "DoGranularMPM": flags.granular,
-            "RunMMSProblem": bool(flags.manufactured_solution),
-            "coupled_flow_analysis": flags.coupled_flow,
-        }
-        for what, wanted in asked.items():
-            if wanted:
-                tag = what.split()[0]
-                element = self.place(flags)
-                at = element.get(tag) if element is not None else None
-                raise ProblemError("UPS412", f"{what} is known, and not run by this program", at or element)
 
     def _refuse_on_ranks(self) -> None:
         """Refuse what runs on one rank only."""

@@ -183,6 +183,8 @@ class Reader(ValueReader):
             self.diagnostics.note("UPS304", f"<{child.tag}> has no effect: {parameter.ignored}", child)
         elif parameter.unsupported and value is not FAILED and value != info.default:
             self.say_unsupported(f"<{child.tag}> ({parameter.meaning}) needs {parameter.unsupported}", child)
+        elif value in parameter.not_run:
+            self.say_unsupported(f"<{child.tag}> {value}", child)
 
     def say_unsupported(self, what: str, at: Located) -> None:
         """Note that a deck asks for something that this program knows and does not run."""

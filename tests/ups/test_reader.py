@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -154,3 +155,24 @@ def test_a_label_may_name_an_earlier_piece_and_only_one(tmp_path):
         '<box label="left"><min>[0.1,0.1,0.0]</min><max>[0.4,0.4,0.1]</max></box>', '<box label="x"/>'
     )
     assert "UPS410" in {code for code, _ in found(deck(materials=unknown), tmp_path)}
+
+
+@pytest.mark.parametrize(
+    ("flag", "what"),
+    [
+        ("<interpolator>4thorderBS</interpolator>", "<interpolator> 4thorderBS"),
+        ("<time_integrator>implicit</time_integrator>", "<time_integrator> implicit"),
+        ("<DoGranularMPM>true</DoGranularMPM>", "needs the granular method"),
+        ("<coupled_flow_analysis>true</coupled_flow_analysis>", "needs pore water"),
+    ],
+)
+def test_options_that_are_known_and_not_run_are_noted_by_the_check_and_refused_by_the_run(
+    flag, what, tmp_path
+):
+    tag = flag[1 : flag.index(">")]
+    text = re.sub(f"<{tag}>.*?</{tag}>", "", deck()).replace("<MPM>", f"<MPM>{flag}", 1)
+    note = the_one(text, tmp_path, "UPS412")
+    assert note.severity is Severity.NOTE
+    assert what in note.message
+    with pytest.raises(DeckError, match="UPS412"):
+        read(text, tmp_path).require()
