@@ -397,7 +397,9 @@ def plasticity_state(
             heat = constant.specific_heat
     melt = melting_temperature(model.melting_temp_model, constant)
     at_melt = with_thermal_properties(constant, heat, melt, model.shear_modulus)
-    stiffness = max(shear_modulus(model.shear_modulus_model, at_melt), LEAST_SHEAR_MODULUS)
+    stiffness = shear_modulus(model.shear_modulus_model, at_melt)
+    if stiffness < LEAST_SHEAR_MODULUS:
+        stiffness = LEAST_SHEAR_MODULUS
     return with_thermal_properties(at_melt, heat, melt, stiffness)
 
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from solver.dispatch import generic_with_default, inline
 from solver.materials.constitutive import DELETE, Material, Point, Step, StressUpdate
-from solver.materials.damage import DamagePoint, damage_state, scalar_damage, update_damage
+from solver.materials.damage import DamagePoint, counts_strain, damage_state, scalar_damage, update_damage
 from solver.materials.damage.no_damage import NoDamage
 from solver.materials.erosion import ErosionState, erode, lets_fail, restrain
 from solver.materials.erosion.no_erosion import NoErosion
@@ -108,8 +108,10 @@ def weakened(
         step,
     )
     stress, localized = damaged.stress, damaged.localized
-    if localized == 0 and fractures(model, state, p, scalar_damage(failure.damage, failure.damage_state, p)):
-        localized = 1
+    if counts_strain(failure.damage) and localized == 0:
+        damage = scalar_damage(failure.damage, failure.damage_state, p)
+        if fractures(model, state, p, damage):
+            localized = 1
     if lets_fail(failure.erosion) and localized != DELETE:
         if localized != point.localized:
             failure.erosion_state.failure_time[p] = step.time

@@ -60,6 +60,12 @@ def update_damage(
 
 
 @generic_with_default
+def counts_strain(model: Any) -> bool:
+    """Whether a model has a :func:`scalar_damage`: a constant, for which kernels of others leave out what needs it."""
+    return False
+
+
+@generic_with_default
 def scalar_damage(model: Any, state: Any, p: int) -> float:
     """Plastic strain of particle ``p`` over that at fracture; 0 for models that do not count it."""
     return 0.0

@@ -14,6 +14,7 @@ from solver.materials.damage import (
     DamagePoint,
     DamageUpdate,
     ScalarDamage,
+    counts_strain,
     for_constitutive_model,
     initialize_damage,
     scalar_damage,
@@ -85,6 +86,11 @@ def _(
         exponent = min(1.5 * mean / equivalent, LARGEST_EXPONENT)
         state.damage[p] += point.plastic_strain_rate * step.dt * math.exp(exponent) / 1.65
     return DamageUpdate(point.stress, point.localized)
+
+
+@implements(counts_strain, HancockMacKenzieDamage)
+def _(model: HancockMacKenzieDamage) -> bool:
+    return True
 
 
 @implements(scalar_damage, HancockMacKenzieDamage)

@@ -14,6 +14,7 @@ from solver.materials.damage import (
     DamagePoint,
     DamageUpdate,
     ScalarDamage,
+    counts_strain,
     for_constitutive_model,
     initialize_damage,
     scalar_damage,
@@ -102,6 +103,11 @@ def _(
     damage = state.damage[p] + point.plastic_strain_rate * step.dt / strain
     state.damage[p] = damage if damage >= model.critical_scalar_damage else 0.0
     return DamageUpdate(point.stress, point.localized)
+
+
+@implements(counts_strain, JohnsonCookDamage)
+def _(model: JohnsonCookDamage) -> bool:
+    return True
 
 
 @implements(scalar_damage, JohnsonCookDamage)
