@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -182,3 +183,37 @@ class Grid:
         """Cell indices (n, 3) of positions (n, 3)."""
         relative = (positions - np.array(self.anchor)) / np.array(self.spacing)
         return np.floor(relative).astype(np.int64)
+
+    def owned_nodes(self) -> Array:
+        """(N,) True for the nodes that belong to a patch, and for a rank's copies of them."""
+        owned = np.zeros(self.number_of_nodes, dtype=np.bool_)
+        box = self.as_box(owned)
+        for patch in self.patches:
+            inside = []
+            for axis in range(3):
+                indices = self.node_indices(axis)
+                last = patch.high[axis] - int(self.has_neighbor(patch, FACES[2 * axis + 1]))
+                inside.append(np.flatnonzero((indices >= patch.low[axis]) & (indices <= last)))
+            box[np.ix_(*inside)] = True
+        return owned
+
+    def inner_nodes(self) -> Array:
+        """(N,) True for the nodes strictly inside the bounding box."""
+        x, y, z = (
+            (self.node_indices(axis) > 0) & (self.node_indices(axis) < self.cells[axis]) for axis in range(3)
+        )
+        return np.asarray(z[:, None, None] & y[:, None] & x).ravel()
+
+    def owned_cells(self) -> Array:
+        """True for the cells that belong to a patch, x fastest; takes no memory where all do."""
+        nx, ny, nz = self.cells
+        if (
+            sum(math.prod(b - a for a, b in zip(p.low, p.high, strict=True)) for p in self.patches)
+            == nx * ny * nz
+        ):
+            return np.broadcast_to(np.array([True]), nx * ny * nz)
+        owned = np.zeros((nz, ny, nx), dtype=np.bool_)
+        for patch in self.patches:
+            x, y, z = (slice(a, b) for a, b in zip(patch.low, patch.high, strict=True))
+            owned[z, y, x] = True
+        return owned.ravel()

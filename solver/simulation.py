@@ -192,14 +192,13 @@ class Simulation:
         self._active = [listed[:0] for listed in self._active_nodes]
         self._fields = [self.nodal.of(m) for m in range(len(self.bodies))]
         self._gathered = new_rows(count, GATHERED)
-        self._chunk_sums = np.zeros((0, MOTION_SUMS))
         self._blocks: dict[int, tuple[int, int, list[NodeBlock]]] = {}
         self._temperature_star = np.zeros((len(self.bodies), count))
         self._projected_temperature = np.zeros((len(self.bodies), count))
-        self._inner_nodes = _inner_nodes(self.grid)
+        self._inner_nodes = self.grid.inner_nodes()
         self._workspace = Workspace()
-        self._owned_nodes = _owned_nodes(self.grid)
-        self._owned_cells = _owned_cells(self.grid)
+        self._owned_nodes = self.grid.owned_nodes()
+        self._owned_cells = self.grid.owned_cells()
         self._uncounted = ~self.exchange.counted
         self.node_positions = self.grid.node_positions()
         self._weight = self.boundary_conditions.node_to_cell_weight()
@@ -427,9 +426,7 @@ class Simulation:
         """Call ``work(first, last, sums)`` for the chunks of a body's particles; the sums (chunks, ..) it stores."""
         count = len(body.particles)
         chunks = number_of_chunks(count)
-        if len(self._chunk_sums) < chunks:
-            self._chunk_sums = np.zeros((chunks, MOTION_SUMS))
-        sums = self._chunk_sums[:chunks]
+        sums = self._workspace.rows("sums of chunks", chunks, np.float64, MOTION_SUMS)
         self.team.share(chunks, self.team.size_for(count), lambda first, last: work(first, last, sums))
         return sums
 
@@ -691,40 +688,3 @@ class Simulation:
             self.reductions["BndyForce_" + name, -1] = force
             axis = FACES.index(face) // 2
             self.reductions["BndyContactCellArea_" + name, -1] = 2.0 * volume / self.grid.spacing[axis]
-
-
-def _owned_nodes(grid: Grid) -> Array:
-    """(N,) True for the nodes that belong to a patch, and for a rank's copies of them."""
-    owned = np.zeros(grid.number_of_nodes, dtype=np.bool_)
-    box = grid.as_box(owned)
-    for patch in grid.patches:
-        inside = []
-        for axis in range(3):
-            indices = grid.node_indices(axis)
-            last = patch.high[axis] - int(grid.has_neighbor(patch, FACES[2 * axis + 1]))
-            inside.append(np.flatnonzero((indices >= patch.low[axis]) & (indices <= last)))
-        box[np.ix_(*inside)] = True
-    return owned
-
-
-def _inner_nodes(grid: Grid) -> Array:
-    """(N,) True for the nodes strictly inside the bounding box."""
-    x, y, z = (
-        (grid.node_indices(axis) > 0) & (grid.node_indices(axis) < grid.cells[axis]) for axis in range(3)
-    )
-    return np.asarray(z[:, None, None] & y[:, None] & x).ravel()
-
-
-def _owned_cells(grid: Grid) -> Array:
-    """True for the cells that belong to a patch, x fastest; takes no memory where all do."""
-    nx, ny, nz = grid.cells
-    if (
-        sum(math.prod(b - a for a, b in zip(p.low, p.high, strict=True)) for p in grid.patches)
-        == nx * ny * nz
-    ):
-        return np.broadcast_to(np.array([True]), nx * ny * nz)
-    owned = np.zeros((nz, ny, nx), dtype=np.bool_)
-    for patch in grid.patches:
-        x, y, z = (slice(a, b) for a, b in zip(patch.low, patch.high, strict=True))
-        owned[z, y, x] = True
-    return owned.ravel()
