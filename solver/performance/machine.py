@@ -35,8 +35,10 @@ class Machine(NamedTuple):
 @kernel
 def triad(a: Any, b: Any, c: Any, s: float, first: int, last: int) -> None:
     """McCalpin's triad, a = b + s c."""
-    for i in range(first, last):
-        a[i] = b[i] + s * c[i]
+    # Parts of the arrays, so that indices begin at 0: others might be negative, and such loops are not vectorized.
+    x, y, z = a[first:last], b[first:last], c[first:last]
+    for i in range(x.shape[0]):
+        x[i] = y[i] + s * z[i]
 
 
 @kernel
