@@ -16,16 +16,16 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 GENERICS: list[Callable[..., Any]] = []
 INLINES: list[Callable[..., Any]] = []
+SINGLES: list[Callable[..., Any]] = []
 _listeners: list[Callable[[str, Callable[..., Any]], None]] = []
 
 
 def listen(listener: Callable[[str, Callable[..., Any]], None]) -> None:
     """Call ``listener(kind, function)`` for all that is declared, now and later (used by ``solver.jit``)."""
     _listeners.append(listener)
-    for function in GENERICS:
-        listener("generic", function)
-    for function in INLINES:
-        listener("inline", function)
+    for kind, known in (("generic", GENERICS), ("inline", INLINES), ("singly", SINGLES)):
+        for function in known:
+            listener(kind, function)
 
 
 def generic(function: Function) -> Function:
@@ -67,9 +67,39 @@ def implements(generic_function: Callable[..., Any], *classes: type) -> Callable
     return register
 
 
+def lanewise(body: Function) -> Function:
+    """Mark the body of a generic function: it can be given the lanes of eight particles in place of numbers.
+
+    Nothing in it branches on a number of the particle; see ``solver.lanes``. Bodies that are not marked are asked
+    for one particle after the other. A generic function that is marked itself has lanes among its arguments
+    whatever the body.
+    """
+    body.lanewise = True  # type: ignore[attr-defined]  # functions take attributes
+    return body
+
+
+def is_lanewise(body: Callable[..., Any] | None) -> bool:
+    """Whether a body can be given lanes."""
+    return getattr(body, "lanewise", False)
+
+
+def takes_lanes(generic_function: Callable[..., Any], model: Any) -> bool:
+    """Whether the body of a generic function for a model can be given lanes."""
+    return is_lanewise(generic_function.implementations.get(type(model)))  # type: ignore[attr-defined]  # set by generic
+
+
 def inline(function: Function) -> Function:
-    """Mark a plain function as callable from kernels."""
-    INLINES.append(function)
+    """Mark a plain function as callable from kernels, with lanes where it does not branch on them."""
+    return _announce("inline", INLINES, function)
+
+
+def singly(function: Function) -> Function:
+    """Mark a plain function as callable from kernels, which ask it for one of eight particles after the other."""
+    return _announce("singly", SINGLES, function)
+
+
+def _announce(kind: str, known: list[Callable[..., Any]], function: Function) -> Function:
+    known.append(function)
     for listener in _listeners:
-        listener("inline", function)
+        listener(kind, function)
     return function

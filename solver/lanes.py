@@ -1,12 +1,17 @@
-"""Rows of eight numbers that are added and scaled at once, for the transfers between particles and grid.
+"""Eight numbers that are computed with at once: rows of nodal arrays, or one number of each of eight particles.
 
 A :class:`Lanes` is a value like :class:`solver.tensor.Tensor`; in kernels it lives in one vector register, or two
 where the processor has shorter ones (``solver.jit`` tells numba how). Nodal arrays that kernels read and write so
 have rows of a multiple of eight.
+
+What is written for the numbers of one particle holds for those of eight as it stands, if nothing branches on them:
+``array[p]`` takes a particle or :class:`Eight` of them, comparisons give a truth or eight, a mask, and
+:func:`where`, :func:`anywhere` and their like take both. Masks are combined with ``&`` and ``|``.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -48,6 +53,26 @@ class Lanes:
     __radd__ = __add__
     __rmul__ = __mul__
 
+    def __lt__(self, other: Lanes | float) -> Any:
+        return self.numbers < _numbers(other)
+
+    def __le__(self, other: Lanes | float) -> Any:
+        return self.numbers <= _numbers(other)
+
+    def __gt__(self, other: Lanes | float) -> Any:
+        return self.numbers > _numbers(other)
+
+    def __ge__(self, other: Lanes | float) -> Any:
+        return self.numbers >= _numbers(other)
+
+    def __eq__(self, other: object) -> Any:
+        return self.numbers == _numbers(other)
+
+    def __ne__(self, other: object) -> Any:
+        return self.numbers != _numbers(other)
+
+    __hash__ = None  # type: ignore[assignment]  # comparisons give masks
+
     def __getitem__(self, k: int) -> float:
         return float(self.numbers[k])
 
@@ -58,13 +83,59 @@ def every(number: float) -> Lanes:
     return Lanes(number, number, number, number, number, number, number, number)
 
 
-def _numbers(value: Lanes | float) -> Any:
+def _numbers(value: Any) -> Any:
     return value.numbers if isinstance(value, Lanes) else value
 
 
-def floor(a: Lanes) -> Lanes:
+class Eight:
+    """Eight particles next to each other, as an index of their arrays in kernels."""
+
+    __slots__ = ("first",)
+
+    def __init__(self, first: int) -> None:
+        self.first = first
+
+
+def floor(a: Any) -> Any:
     """The largest whole number not above each."""
-    return Lanes(*np.floor(a.numbers))
+    return Lanes(*np.floor(a.numbers)) if isinstance(a, Lanes) else float(math.floor(a))
+
+
+def where(condition: Any, a: Any, b: Any) -> Any:
+    """``a`` where the condition holds, else ``b``: numbers, truths or tensors. Both are computed."""
+    if isinstance(condition, np.ndarray):
+        return Lanes(*np.where(condition, _numbers(a), _numbers(b)))
+    return a if condition else b
+
+
+def like(value: Any, pattern: Any) -> Any:
+    """A number or truth, in as many lanes as another value has."""
+    return every(value) if isinstance(pattern, Lanes) else value
+
+
+def anywhere(condition: Any) -> bool:
+    """Whether a condition holds for a particle, or for any of eight."""
+    return bool(np.any(condition))
+
+
+def everywhere(condition: Any) -> bool:
+    """Whether a condition holds for a particle, or for all of eight."""
+    return bool(np.all(condition))
+
+
+def negation(condition: Any) -> Any:
+    """The opposite of a truth or mask."""
+    return np.logical_not(condition)
+
+
+def sum_of(a: Any) -> float:
+    """The sum of eight numbers; a single one is its own."""
+    return float(np.sum(_numbers(a)))
+
+
+def largest_of(a: Any) -> float:
+    """The largest of eight numbers; a single one is its own."""
+    return float(np.max(_numbers(a)))
 
 
 def above(a: Lanes | float, b: Lanes | float) -> Lanes:

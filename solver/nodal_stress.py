@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from solver.grid import FACES, Grid, GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
-from solver.jit import kernel
+from solver.jit import kernel_with_scratch
 from solver.particles import Particles
 from solver.tensor import tensor_at
 
@@ -115,7 +115,7 @@ def project_stress(simulation: Simulation, body: Body) -> Array:
     return sums
 
 
-@kernel
+@kernel_with_scratch
 def scatter_stress(interpolator: Any, grid: GridIndex, particles: Particles, sums: Any) -> None:
     """Add V_p sigma_p S_ip of each particle to the nodes (N, 9), matrices row by row."""
     nodes = np.empty(MOST_NODES, np.int64)

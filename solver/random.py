@@ -73,9 +73,9 @@ def _walk(seed: int, permutation: Any, drawn: Any) -> None:
 
 @cache
 def _compiled_walk() -> Callable[[int, Any, Any], None]:
-    from solver.jit import kernel
+    from solver.jit import kernel_with_scratch
 
-    return kernel(_walk)
+    return kernel_with_scratch(_walk)
 
 
 def musil(seed: int, count: int) -> Floats:

@@ -14,9 +14,9 @@ def deferred_kernel(function: Function) -> Function:
 
     @functools.cache
     def compiled() -> Callable[..., Any]:
-        from solver.jit import kernel
+        from solver.jit import kernel_with_scratch
 
-        return kernel(function)
+        return kernel_with_scratch(function)
 
     @functools.wraps(function)
     def call(*args: Any) -> Any:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver.dispatch import generic, generic_with_default, inline
+from solver.dispatch import generic, generic_with_default, inline, lanewise
 from solver.grid import GridIndex, NodeBlock
 from solver.lanes import Lanes, every, lanes_at, put_lanes
 from solver.particles import Particles
@@ -117,6 +117,7 @@ class Sums(NamedTuple):
     """(N,) set to 1 at every node that something is added to."""
 
 
+@lanewise
 @generic_with_default
 def scatter(
     interpolator: Any,

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from solver.dispatch import generic, implements, inline
+from solver.dispatch import generic, implements, inline, lanewise
 from solver.grid import GridIndex, NodeBlock
 from solver.interpolation.shape import (
     Content,
@@ -57,6 +57,7 @@ def stencil(outer: Lanes, w0: Lanes, w1: Lanes, w2: Lanes, g0: Lanes, g1: Lanes,
     )
 
 
+@lanewise
 @generic
 def direction(interpolator: Any, f: Lanes, width: Lanes) -> Stencil:
     """The weights of particles that wide, 0 <= f < 1 from the lower node of their cell; both in cells."""

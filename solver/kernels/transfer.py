@@ -22,7 +22,7 @@ from solver.interpolation.shape import (
     scatter,
     shape_functions,
 )
-from solver.jit import kernel
+from solver.jit import kernel_with_scratch
 from solver.kernels.chunks import CHUNK
 from solver.lanes import WIDTH, Lanes
 from solver.particles import Particles
@@ -52,7 +52,7 @@ class Transfer(NamedTuple):
     specific_heat: float
 
 
-@kernel
+@kernel_with_scratch
 def particles_to_grid(
     interpolator: Any,
     grid: GridIndex,
@@ -118,7 +118,7 @@ def negative_pull(particles: Particles, p: int, transfer: Transfer) -> Tensor:
     return s
 
 
-@kernel
+@kernel_with_scratch
 def add_gradients(interpolator: Any, grid: GridIndex, particles: Particles, sums: Any) -> None:
     """Gradient-enhanced projection: particles give nodes v_p - L (x_p - x_i) and T_p - grad T . (x_p - x_i).
 
@@ -145,7 +145,7 @@ def add_gradients(interpolator: Any, grid: GridIndex, particles: Particles, sums
             row[5] -= mass * (g[0] * rx + g[1] * ry + g[2] * rz)
 
 
-@kernel
+@kernel_with_scratch
 def smooth_velocity(
     interpolator: Any,
     grid: GridIndex,
@@ -191,7 +191,7 @@ def total(sums: Any) -> Motion:
     return Motion(kinetic, thermal, (px, py, pz), (cx, cy, cz))
 
 
-@kernel
+@kernel_with_scratch
 def grid_to_particles(
     interpolator: Any,
     grid: GridIndex,

@@ -13,7 +13,7 @@ from mpm_cases import MATERIAL, elastic, fill, make_body, make_grid, make_partic
 from scipy.linalg import expm
 
 from solver.interpolation.gimp import Gimp, GimpAxisymmetric
-from solver.jit import kernel
+from solver.jit import kernel_with_scratch
 from solver.kernels import nodes, settle, stress
 from solver.kernels.stress import STRESS_SUMS, Kinematics
 from solver.materials.constitutive import DELETE, NoState, Step
@@ -373,7 +373,7 @@ def test_uniform_motion_of_the_nodes_has_no_gradient():
 L_GENERAL = np.array([[0.4, -0.9, 0.2], [0.7, -0.3, 0.5], [-0.1, 0.6, 0.2]])
 
 
-@kernel
+@kernel_with_scratch
 def deformed(F, L, dt, subcycles):
     """F after a step, as an array."""
     new = stress.new_deformation_gradient(tensor_at(F, 0), tensor_at(L, 0), dt, subcycles)

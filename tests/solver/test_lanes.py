@@ -2,10 +2,31 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+import pytest
 
 from solver.jit import kernel
-from solver.lanes import WIDTH, Lanes, above, add_scaled, every, floor, lanes_at, new_rows, put_lanes
+from solver.lanes import (
+    WIDTH,
+    Eight,
+    Lanes,
+    above,
+    add_scaled,
+    anywhere,
+    every,
+    everywhere,
+    floor,
+    lanes_at,
+    largest_of,
+    like,
+    negation,
+    new_rows,
+    put_lanes,
+    sum_of,
+    where,
+)
 
 A = np.array([0.5, -1.25, 2.0, 3.75, -0.0, 1e30, 7.0, -7.5])
 B = np.array([2.0, 4.0, -8.0, 0.25, 1.0, 1e-30, 7.0, 3.0])
@@ -64,6 +85,91 @@ def test_lanes_are_added_and_scaled_number_by_number():
 
 def test_kernels_do_the_same():
     check(compiled)
+
+
+def compare(rows, results):
+    """Choices between two rows, one a row."""
+    a, b = lanes_at(rows, 0, 0), lanes_at(rows, 1, 0)
+    put_lanes(results, 0, 0, where(a < b, a, b))
+    put_lanes(results, 1, 0, where(a <= b, 1.0, b))
+    put_lanes(results, 2, 0, where(a > b, a, 0.0))
+    put_lanes(results, 3, 0, where(a >= b, 1.0, 2.0))
+    put_lanes(results, 4, 0, where(a == 7.0, a, b))
+    put_lanes(results, 5, 0, where(a != b, a, 0.0))
+    put_lanes(results, 6, 0, where((a > 0.0) & (b > 0.0), a, b))
+    put_lanes(results, 7, 0, where((a < 0.0) | (b < 0.0), a, b))
+    put_lanes(results, 8, 0, where(negation(a < 0.0), a, b))
+    put_lanes(results, 9, 0, like(3.0, a))
+    results[10, 0] = sum_of(b)
+    results[10, 1] = largest_of(b)
+    results[10, 2] = 1.0 if anywhere(a > 1.0e29) else 0.0
+    results[10, 3] = 1.0 if anywhere(a > 1.0e31) else 0.0
+    results[10, 4] = 1.0 if everywhere(a > -8.0) else 0.0
+    results[10, 5] = 1.0 if everywhere(a > 0.0) else 0.0
+
+
+@pytest.mark.parametrize("run", [compare, kernel(compare)], ids=["plain", "kernel"])
+def test_comparisons_choose_number_by_number(run):
+    results = new_rows(11, 8)
+    run(np.array([A, B]), results)
+    expected = [
+        np.minimum(A, B),
+        np.where(A <= B, 1.0, B),
+        np.where(A > B, A, 0.0),
+        np.where(A >= B, 1.0, 2.0),
+        np.where(A == 7.0, A, B),
+        np.where(A != B, A, 0.0),
+        np.where((A > 0.0) & (B > 0.0), A, B),
+        np.where((A < 0.0) | (B < 0.0), A, B),
+        np.where(A >= 0.0, A, B),
+        np.full(8, 3.0),
+    ]
+    np.testing.assert_array_equal(results[:10], expected)
+    np.testing.assert_array_equal(results[10], [B.sum(), 7.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+
+
+def test_what_holds_for_eight_holds_for_one():
+    assert (where(True, 1.0, 2.0), where(False, 1.0, 2.0), like(3.0, 1.0)) == (1.0, 2.0, 3.0)
+    assert (sum_of(2.5), largest_of(-1.0), floor(-0.5)) == (2.5, -1.0, -1.0)
+    assert (anywhere(True), everywhere(False), negation(False)) == (True, False, True)
+
+
+@kernel
+def of_eight(numbers, whole, vectors, tensors, results):
+    """What particles 3 to 10 have, through their arrays and back."""
+    p = Eight(3)
+    results[p, 0] = numbers[p]
+    results[p, 1] = vectors[p, 2]
+    results[p, 2] = tensors[p, 1, 2]
+    results[p, 3] = abs(numbers[p])
+    results[p, 4] = max(numbers[p], 0.25)
+    results[p, 5] = min(0.25, numbers[p])
+    results[p, 6] = math.sqrt(abs(numbers[p]))
+    results[p, 7] = whole[p] + 1
+    numbers[p] -= 1.0
+    numbers[p] *= 2.0
+    whole[p] = where(numbers[p] > 0.0, 5, whole[p])
+    vectors[p, 1] = 4.0
+    tensors[p, 2, 0] = numbers[p]
+
+
+def test_eight_particles_index_arrays():
+    rng = np.random.default_rng(3)
+    numbers, vectors, tensors = rng.normal(size=14), rng.normal(size=(14, 3)), rng.normal(size=(14, 3, 3))
+    whole, results = np.arange(14, dtype=np.int32), np.zeros((14, 8))
+    before = [array.copy() for array in (numbers, whole, vectors, tensors)]
+    of_eight(numbers, whole, vectors, tensors, results)
+    x, n, v, t = before
+    columns = [x, v[:, 2], t[:, 1, 2], abs(x), np.maximum(x, 0.25), np.minimum(x, 0.25), abs(x) ** 0.5, n + 1]
+    inside = np.zeros(14, bool)
+    inside[3:11] = True
+    np.testing.assert_array_equal(results, np.where(inside[:, None], np.transpose(columns), 0.0))
+    new = (x - 1.0) * 2.0
+    np.testing.assert_array_equal(numbers, np.where(inside, new, x))
+    np.testing.assert_array_equal(whole, np.where(inside & (new > 0.0), 5, n))
+    v[inside, 1], t[inside, 2, 0] = 4.0, new[inside]
+    np.testing.assert_array_equal(vectors, v)
+    np.testing.assert_array_equal(tensors, t)
 
 
 def fused(rows, results):

@@ -10,7 +10,7 @@ from solver.diffusion import diffusivity, drift
 from solver.diffusion.solute import Solute
 from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
-from solver.jit import kernel
+from solver.jit import kernel_with_scratch
 from solver.particles import Particles
 from solver.tensor import tensor_at, trace
 
@@ -19,7 +19,7 @@ SUMS = 3
 times the rate by fluxes through the surface."""
 
 
-@kernel
+@kernel_with_scratch
 def concentration_to_grid(
     interpolator: Any,
     grid: GridIndex,
@@ -55,7 +55,7 @@ def concentration_to_grid(
             sums[nodes[n], 2] += share * solute.external_rate[p]
 
 
-@kernel
+@kernel_with_scratch
 def fluxes_to_grid(
     law: Any,
     hold: bool,
@@ -101,7 +101,7 @@ def fluxes_to_grid(
     return largest
 
 
-@kernel
+@kernel_with_scratch
 def concentration_to_particles(
     interpolator: Any,
     grid: GridIndex,

@@ -9,7 +9,7 @@ import numpy as np
 from solver.dispatch import inline
 from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
-from solver.jit import kernel
+from solver.jit import kernel, kernel_with_scratch
 from solver.materials.nonlocal_drucker_prager import (
     Flow,
     NonlocalDruckerPrager,
@@ -29,7 +29,7 @@ TOLERANCE = 1.0e-14
 MOST_SWEEPS = 10000
 
 
-@kernel
+@kernel_with_scratch
 def find_multipliers(
     model: NonlocalDruckerPrager,
     state: Any,

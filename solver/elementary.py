@@ -1,0 +1,80 @@
+"""Exponential and logarithm of eight numbers at once, to about the last digit.
+
+Series whose terms beyond the last are below the rounding: nothing is fitted. Kernels take them for ``math.exp``,
+``math.log`` and ``**`` of lanes (``solver.jit`` tells numba so).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from solver.dispatch import inline
+from solver.lanes import Lanes, floor, where
+
+LN_2_HIGH = 0.693147180369123816490
+"""The first 32 bits of ln 2: whole numbers below 2^20 times it are exact."""
+LN_2_LOW = 1.90821492927058770002e-10
+"""What is left."""
+
+
+def exponent(a: Lanes) -> Lanes:
+    """The whole number n of a = m 2^n with 1 <= m < 2, for positive normal numbers."""
+    return Lanes(*(np.frexp(a.numbers)[1] - 1.0))
+
+
+def mantissa(a: Lanes) -> Lanes:
+    """The m of a = m 2^n with 1 <= m < 2, for positive normal numbers."""
+    return Lanes(*(2.0 * np.frexp(a.numbers)[0]))
+
+
+def power_of_two(n: Lanes) -> Lanes:
+    """2^n for whole numbers between -1022 and 1023."""
+    return Lanes(*np.ldexp(1.0, n.numbers.astype(np.int64)))
+
+
+@inline
+def exponential(x: Lanes) -> Lanes:
+    """e^x = 2^n e^r with |r| <= ln(2) / 2, the latter by Taylor's series to the 13th power."""
+    bounded = where(x > 709.0, 709.0, where(x < -708.0, -708.0, x))
+    n = floor(bounded * (1.0 / math.log(2.0)) + 0.5)
+    r = (bounded - n * LN_2_HIGH) - n * LN_2_LOW
+    r2 = r * r
+    r4 = r2 * r2
+    low = (1.0 + r) + r2 * (1.0 / 2.0 + r * (1.0 / 6.0))
+    middle = (1.0 / 24.0 + r * (1.0 / 120.0)) + r2 * (1.0 / 720.0 + r * (1.0 / 5040.0))
+    high = (1.0 / 40320.0 + r * (1.0 / 362880.0)) + r2 * (1.0 / 3628800.0 + r * (1.0 / 39916800.0))
+    highest = 1.0 / 479001600.0 + r * (1.0 / 6227020800.0)
+    series = low + r4 * (middle + r4 * (high + r4 * highest))
+    value = series * power_of_two(n)
+    return where(x > 709.0, math.inf, where(x < -708.0, 0.0, where(x == x, value, x)))
+
+
+@inline
+def logarithm(x: Lanes) -> Lanes:
+    """Ln x = n ln 2 + 2 artanh((m - 1) / (m + 1)) with m within a factor sqrt(2) of 1, by the series of artanh."""
+    n = exponent(x)
+    m = mantissa(x)
+    large = m > math.sqrt(2.0)
+    m = where(large, 0.5 * m, m)
+    n = where(large, n + 1.0, n)
+    f = m - 1.0
+    s = f / (2.0 + f)
+    z = s * s
+    z2 = z * z
+    z4 = z2 * z2
+    low = (1.0 / 3.0 + z * (1.0 / 5.0)) + z2 * (1.0 / 7.0 + z * (1.0 / 9.0))
+    high = (1.0 / 11.0 + z * (1.0 / 13.0)) + z2 * (1.0 / 15.0 + z * (1.0 / 17.0))
+    highest = 1.0 / 19.0 + z * (1.0 / 21.0)
+    series = z * (low + z4 * (high + z4 * highest))
+    # ln m = f - s (f - 2 series): the largest part, f, is exact
+    value = n * LN_2_HIGH + (f - (s * (f - 2.0 * series) - n * LN_2_LOW))
+    positive = where(x < math.inf, value, x)
+    return where(x > 2.3e-308, positive, where(x == x, where(x < 0.0, math.nan, -math.inf), x))
+
+
+@inline
+def power(a: Lanes, b: Lanes | float) -> Lanes:
+    """a^b for a >= 0; 0^0 is 1, as everywhere."""
+    return where(b == 0.0, 1.0, exponential(b * logarithm(a)))

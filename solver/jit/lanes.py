@@ -1,0 +1,454 @@
+"""Lanes in kernels: vectors, masks, and the arrays that eight particles index."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.core.types.containers import BaseTuple
+from numba.extending import intrinsic, lower_builtin, make_attribute_wrapper, overload, type_callable
+
+from solver import elementary, lanes, tensor
+from solver.jit.compile import INLINED
+from solver.jit.types import (
+    FASTMATH,
+    VECTOR,
+    EightType,
+    LanesType,
+    MaskType,
+    TensorType,
+    eight_type,
+    lanes_type,
+    mask_type,
+)
+from solver.lanes import WIDTH, Eight, Lanes
+
+I32, I64 = ir.IntType(32), ir.IntType(64)
+
+
+@type_callable(Lanes)
+def _type_lanes(context: Any) -> Callable[..., Any]:
+    def typer(a: Any, b: Any, c: Any, d: Any, e: Any, f: Any, g: Any, h: Any) -> Any:
+        return lanes_type if all(isinstance(t, types.Number) for t in (a, b, c, d, e, f, g, h)) else None
+
+    return typer
+
+
+@lower_builtin(Lanes, *[types.Number] * WIDTH)
+def _make_lanes(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    vector = ir.Constant(VECTOR, ir.Undefined)
+    for k, (value, given) in enumerate(zip(args, sig.args, strict=True)):
+        number = context.cast(builder, value, given, types.float64)
+        vector = builder.insert_element(vector, number, I32(k))
+    return vector
+
+
+# ---- arithmetic and comparisons ------------------------------------------------------------------------------
+
+
+def _of_two(operation: Callable[..., Any], answer: Any = lanes_type) -> Any:
+    """An intrinsic on two lanes, lane by lane."""
+
+    @intrinsic
+    def combine(context: Any, a: Any, b: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            return operation(builder, *args)
+
+        return answer(lanes_type, lanes_type), generate
+
+    return combine
+
+
+def _let(wide: type, single: type, combine: Any, *functions: Callable[..., Any]) -> None:
+    """Tell numba how functions of two go with lanes, or with lanes and a number; or with masks and truths."""
+
+    def choose(a: Any, b: Any) -> Any:
+        if any(isinstance(t, wide) for t in (a, b)) and all(isinstance(t, wide | single) for t in (a, b)):
+            return lambda a, b: combine(a, b)
+        return None
+
+    for function in functions:
+        overload(function, jit_options=INLINED, strict=False)(choose)
+
+
+def _let_lanes(combine: Any, *functions: Callable[..., Any]) -> None:
+    _let(LanesType, types.Number, combine, *functions)
+
+
+def _pick(builder: Any, comparison: str, a: Any, b: Any) -> Any:
+    """The one of two, ``b`` where it compares so with ``a``, as Python's max and min."""
+    return builder.select(builder.fcmp_ordered(comparison, b, a), b, a)
+
+
+_let_lanes(_of_two(lambda builder, a, b: builder.fadd(a, b, flags=FASTMATH)), operator.add, operator.iadd)
+_let_lanes(_of_two(lambda builder, a, b: builder.fsub(a, b, flags=FASTMATH)), operator.sub, operator.isub)
+_let_lanes(_of_two(lambda builder, a, b: builder.fmul(a, b, flags=FASTMATH)), operator.mul, operator.imul)
+_let_lanes(_of_two(lambda builder, a, b: builder.fdiv(a, b, flags=FASTMATH)), operator.truediv)
+_let_lanes(_of_two(lambda builder, a, b: _pick(builder, ">", a, b)), max)
+_let_lanes(_of_two(lambda builder, a, b: _pick(builder, "<", a, b)), min)
+_let_lanes(
+    _of_two(lambda builder, a, b: builder.uitofp(builder.fcmp_ordered(">", a, b), VECTOR)), lanes.above
+)
+for _operator, _sign in (
+    (operator.lt, "<"),
+    (operator.le, "<="),
+    (operator.gt, ">"),
+    (operator.ge, ">="),
+    (operator.eq, "=="),
+):
+    _let_lanes(_of_two(lambda b, x, y, sign=_sign: b.fcmp_ordered(sign, x, y), mask_type), _operator)
+_let_lanes(_of_two(lambda builder, a, b: builder.fcmp_unordered("!=", a, b), mask_type), operator.ne)
+
+
+@intrinsic
+def _both(context: Any, a: Any, b: Any) -> Any:
+    return mask_type(mask_type, mask_type), lambda _, builder, signature, args: builder.and_(*args)
+
+
+@intrinsic
+def _either(context: Any, a: Any, b: Any) -> Any:
+    return mask_type(mask_type, mask_type), lambda _, builder, signature, args: builder.or_(*args)
+
+
+_let(MaskType, types.Boolean, _both, operator.and_, operator.iand)
+_let(MaskType, types.Boolean, _either, operator.or_, operator.ior)
+
+
+@intrinsic
+def _opposite(context: Any, a: Any) -> Any:
+    return mask_type(mask_type), lambda _, builder, signature, args: builder.not_(args[0])
+
+
+@overload(lanes.negation, jit_options=INLINED, strict=False)
+def _negation(mask: Any) -> Any:
+    return (lambda mask: _opposite(mask)) if isinstance(mask, MaskType) else (lambda mask: not mask)
+
+
+@intrinsic
+def _bits(context: Any, mask: Any) -> Any:
+    """The truths of a mask as the bits of a number."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.bitcast(args[0], ir.IntType(WIDTH))
+
+    return types.uint8(mask_type), generate
+
+
+@overload(lanes.anywhere, jit_options=INLINED, strict=False)
+def _anywhere(mask: Any) -> Any:
+    return (lambda mask: _bits(mask) != 0) if isinstance(mask, MaskType) else (lambda mask: mask)
+
+
+@overload(lanes.everywhere, jit_options=INLINED, strict=False)
+def _everywhere(mask: Any) -> Any:
+    return (lambda mask: _bits(mask) == 255) if isinstance(mask, MaskType) else (lambda mask: mask)
+
+
+@intrinsic
+def _select(context: Any, mask: Any, a: Any, b: Any) -> Any:
+    answer = mask_type if all(isinstance(t, MaskType | types.Boolean) for t in (a, b)) else lanes_type
+    return answer(mask_type, answer, answer), lambda _, builder, signature, args: builder.select(*args)
+
+
+def _select_tensor(condition: Any, a: Any, b: Any) -> Any:
+    where = lanes.where
+    return tensor.Tensor(
+        where(condition, a.xx, b.xx),
+        where(condition, a.xy, b.xy),
+        where(condition, a.xz, b.xz),
+        where(condition, a.yx, b.yx),
+        where(condition, a.yy, b.yy),
+        where(condition, a.yz, b.yz),
+        where(condition, a.zx, b.zx),
+        where(condition, a.zy, b.zy),
+        where(condition, a.zz, b.zz),
+    )
+
+
+@overload(lanes.where, jit_options=INLINED, strict=False)
+def _where(condition: Any, a: Any, b: Any) -> Any:
+    if not isinstance(condition, MaskType):
+        return lambda condition, a, b: a if condition else b
+    if isinstance(a, TensorType):
+        return _select_tensor
+    return lambda condition, a, b: _select(condition, a, b)
+
+
+@intrinsic
+def _as_wide(context: Any, value: Any, pattern: Any) -> Any:
+    return pattern(pattern, pattern), lambda _, builder, signature, args: args[0]
+
+
+@overload(lanes.like, jit_options=INLINED, strict=False)
+def _like(value: Any, pattern: Any) -> Any:
+    if isinstance(pattern, LanesType | MaskType):
+        return lambda value, pattern: _as_wide(value, pattern)
+    return lambda value, pattern: value
+
+
+# ---- functions of one ----------------------------------------------------------------------------------------
+
+
+def _of_one(name: str) -> Any:
+    """LLVM's function of that name, lane by lane."""
+
+    @intrinsic
+    def call(context: Any, a: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            kind = ir.FunctionType(VECTOR, [VECTOR])
+            function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{WIDTH}f64")
+            return builder.call(function, args)
+
+        return lanes_type(lanes_type), generate
+
+    return call
+
+
+def _let_one(function: Callable[..., Any], body: Callable[..., Any]) -> None:
+    """Tell numba how a function of one goes with lanes."""
+
+    @overload(function, jit_options=INLINED, strict=False)
+    def choose(a: Any) -> Any:
+        return body if isinstance(a, LanesType) else None
+
+
+_floor_of, _sqrt_of, _abs_of = _of_one("floor"), _of_one("sqrt"), _of_one("fabs")
+_let_one(math.sqrt, lambda a: _sqrt_of(a))
+_let_one(abs, lambda a: _abs_of(a))
+_let_one(math.exp, elementary.exponential)
+_let_one(math.log, elementary.logarithm)
+_let_one(math.isfinite, lambda a: _abs_of(a) < math.inf)
+_let_one(operator.neg, lambda a: -1.0 * a)
+
+
+@overload(operator.pow, jit_options=INLINED, strict=False)
+def _power(a: Any, b: Any) -> Any:
+    if isinstance(a, LanesType) and isinstance(b, LanesType | types.Float):
+        return elementary.power
+    return None
+
+
+@overload(lanes.floor, jit_options=INLINED, strict=False)
+def _floor(a: Any) -> Any:
+    return (lambda a: _floor_of(a)) if isinstance(a, LanesType) else (lambda a: float(math.floor(a)))
+
+
+INTEGERS = ir.VectorType(I64, WIDTH)
+
+
+def _integers(number: int) -> Any:
+    """A whole number in every lane."""
+    return ir.Constant(INTEGERS, [number] * WIDTH)
+
+
+FRACTION_BITS = 52
+BIAS = 1023
+"""Of the exponents of double precision."""
+
+
+def _of_bits(operation: Callable[..., Any]) -> Any:
+    """An intrinsic on the bits of lanes."""
+
+    @intrinsic
+    def call(context: Any, a: Any) -> Any:
+        return lanes_type(lanes_type), lambda _, builder, signature, args: operation(builder, args[0])
+
+    return call
+
+
+def _exponent(builder: Any, a: Any) -> Any:
+    biased = builder.lshr(builder.bitcast(a, INTEGERS), _integers(FRACTION_BITS))
+    return builder.sitofp(builder.sub(biased, _integers(BIAS)), VECTOR)
+
+
+def _mantissa(builder: Any, a: Any) -> Any:
+    fraction = builder.and_(builder.bitcast(a, INTEGERS), _integers((1 << FRACTION_BITS) - 1))
+    return builder.bitcast(builder.or_(fraction, _integers(BIAS << FRACTION_BITS)), VECTOR)
+
+
+def _power_of_two(builder: Any, n: Any) -> Any:
+    biased = builder.add(builder.fptosi(n, INTEGERS), _integers(BIAS))
+    return builder.bitcast(builder.shl(biased, _integers(FRACTION_BITS)), VECTOR)
+
+
+_exponent_of, _mantissa_of = _of_bits(_exponent), _of_bits(_mantissa)
+_power_of_two_of = _of_bits(_power_of_two)
+_let_one(elementary.exponent, lambda a: _exponent_of(a))
+_let_one(elementary.mantissa, lambda a: _mantissa_of(a))
+_let_one(elementary.power_of_two, lambda a: _power_of_two_of(a))
+
+
+@intrinsic
+def _add_scaled_lanes(context: Any, total: Any, part: Any, factor: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        kind = ir.FunctionType(VECTOR, [VECTOR] * 3)
+        fma = cgutils.get_or_insert_function(builder.module, kind, f"llvm.fma.v{WIDTH}f64")
+        return builder.call(fma, [args[1], args[2], args[0]])
+
+    return lanes_type(lanes_type, lanes_type, lanes_type), generate
+
+
+@overload(lanes.add_scaled, jit_options=INLINED, strict=False)
+def _add_scaled(total: Any, part: Any, factor: Any) -> Any:
+    return lambda total, part, factor: _add_scaled_lanes(total, part, factor)
+
+
+# ---- lanes of lanes ------------------------------------------------------------------------------------------
+
+
+@intrinsic
+def _lane(context: Any, a: Any, k: Any) -> Any:
+    return types.float64(lanes_type, types.intp), lambda _, builder, signature, args: builder.extract_element(
+        *args
+    )
+
+
+@overload(operator.getitem, jit_options=INLINED, strict=False)
+def _get_lane(a: Any, k: Any) -> Any:
+    return (lambda a, k: _lane(a, k)) if isinstance(a, LanesType) else None
+
+
+@overload(lanes.sum_of, jit_options=INLINED, strict=False)
+def _sum_of(a: Any) -> Any:
+    if isinstance(a, LanesType):
+        return lambda a: ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]))
+    return lambda a: a
+
+
+@overload(lanes.largest_of, jit_options=INLINED, strict=False)
+def _largest_of(a: Any) -> Any:
+    if isinstance(a, LanesType):
+        return lambda a: max(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7])
+    return lambda a: a
+
+
+# ---- arrays --------------------------------------------------------------------------------------------------
+
+
+def _place(context: Any, builder: Any, rows_type: Any, rows: Any, row: Any, start: Any) -> Any:
+    """Address of ``rows[row, start]`` of a C-contiguous array, as that of a vector."""
+    array = context.make_array(rows_type)(context, builder, rows)
+    width = builder.extract_value(array.shape, 1)
+    position = builder.add(builder.mul(row, width), start)
+    return builder.bitcast(builder.gep(array.data, [position]), VECTOR.as_pointer())
+
+
+@intrinsic
+def _load_lanes(context: Any, rows: Any, row: Any, start: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        return builder.load(_place(context, builder, signature.args[0], *args), align=8)
+
+    return lanes_type(rows, types.uintp, types.uintp), generate
+
+
+@intrinsic
+def _store_lanes(context: Any, rows: Any, row: Any, start: Any, value: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        builder.store(args[3], _place(context, builder, signature.args[0], *args[:3]), align=8)
+        return context.get_dummy_value()
+
+    return types.void(rows, types.uintp, types.uintp, lanes_type), generate
+
+
+@overload(lanes.lanes_at, jit_options=INLINED, strict=False)
+def _lanes_at(rows: Any, row: Any, start: Any) -> Any:
+    return lambda rows, row, start: _load_lanes(rows, row, start)
+
+
+@overload(lanes.put_lanes, jit_options=INLINED, strict=False)
+def _put_lanes(rows: Any, row: Any, start: Any, lanes: Any) -> Any:
+    return lambda rows, row, start, lanes: _store_lanes(rows, row, start, lanes)
+
+
+@type_callable(Eight)
+def _type_eight(context: Any) -> Callable[..., Any]:
+    return lambda first: eight_type if isinstance(first, types.Integer) else None
+
+
+@lower_builtin(Eight, types.Integer)
+def _make_eight(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    proxy = cgutils.create_struct_proxy(eight_type)(context, builder)
+    proxy.first = context.cast(builder, args[0], sig.args[0], types.uintp)
+    return proxy._getvalue()
+
+
+make_attribute_wrapper(EightType, "first", "first")
+
+
+def _elements(context: Any, builder: Any, array_type: Any, array: Any, first: Any, offset: Any) -> list[Any]:
+    """Addresses of the same element of eight particles in a C-contiguous array (n, ...)."""
+    view = context.make_array(array_type)(context, builder, array)
+    stride: Any = I64(1)
+    for axis in range(1, array_type.ndim):
+        stride = builder.mul(stride, builder.extract_value(view.shape, axis))
+    start = builder.add(builder.mul(first, stride), offset)
+    steps = [builder.mul(stride, I64(k)) for k in range(WIDTH)]
+    return [builder.gep(view.data, [builder.add(start, step)]) for step in steps]
+
+
+@intrinsic
+def _load_eight(context: Any, array: Any, first: Any, offset: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        number = signature.args[0].dtype
+        places = _elements(context, builder, signature.args[0], *args)
+        if signature.args[0].ndim == 1 and number == types.float64:
+            return builder.load(builder.bitcast(places[0], VECTOR.as_pointer()), align=8)
+        vector = ir.Constant(VECTOR, ir.Undefined)
+        for k, place in enumerate(places):
+            value = context.cast(builder, builder.load(place), number, types.float64)
+            vector = builder.insert_element(vector, value, I32(k))
+        return vector
+
+    return lanes_type(array, types.uintp, types.uintp), generate
+
+
+@intrinsic
+def _store_eight(context: Any, array: Any, first: Any, offset: Any, value: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        number = signature.args[0].dtype
+        places = _elements(context, builder, signature.args[0], *args[:3])
+        if signature.args[0].ndim == 1 and number == types.float64:
+            builder.store(args[3], builder.bitcast(places[0], VECTOR.as_pointer()), align=8)
+            return context.get_dummy_value()
+        for k, place in enumerate(places):
+            element = builder.extract_element(args[3], I32(k))
+            builder.store(context.cast(builder, element, types.float64, number), place)
+        return context.get_dummy_value()
+
+    return types.void(array, types.uintp, types.uintp, lanes_type), generate
+
+
+def _is_of_eight(index: Any) -> bool:
+    return isinstance(index, BaseTuple) and len(index) > 0 and isinstance(index[0], EightType)
+
+
+@overload(operator.getitem, jit_options=INLINED, strict=False)
+def _get_eight(array: Any, index: Any) -> Any:
+    if not isinstance(array, types.Array):
+        return None
+    if isinstance(index, EightType):
+        return lambda array, index: _load_eight(array, index.first, 0)
+    if _is_of_eight(index) and len(index) == array.ndim == 2:
+        return lambda array, index: _load_eight(array, index[0].first, index[1])
+    if _is_of_eight(index) and len(index) == array.ndim == 3:
+        return lambda array, index: _load_eight(array, index[0].first, index[1] * array.shape[2] + index[2])
+    return None
+
+
+@overload(operator.setitem, jit_options=INLINED, strict=False)
+def _set_eight(array: Any, index: Any, value: Any) -> Any:
+    if not isinstance(array, types.Array):
+        return None
+    if isinstance(index, EightType):
+        return lambda array, index, value: _store_eight(array, index.first, 0, value)
+    if _is_of_eight(index) and len(index) == array.ndim == 2:
+        return lambda array, index, value: _store_eight(array, index[0].first, index[1], value)
+    if _is_of_eight(index) and len(index) == array.ndim == 3:
+        return lambda array, index, value: _store_eight(
+            array, index[0].first, index[1] * array.shape[2] + index[2], value
+        )
+    return None

@@ -1,0 +1,78 @@
+"""Exponential, logarithm and power of eight numbers, against NumPy's."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from solver import elementary
+from solver.jit import kernel
+from solver.lanes import Eight, Lanes
+
+LAST_DIGITS = 4.0e-16
+"""Relative: two units of the last place."""
+
+
+@kernel
+def compute(x, exponents, exponentials, logarithms, powers):
+    for start in range(0, x.shape[0], 8):
+        p = Eight(start)
+        exponentials[p] = math.exp(exponents[p])
+        logarithms[p] = math.log(x[p])
+        powers[p] = x[p] ** 0.31
+
+
+@pytest.fixture
+def numbers():
+    rng = np.random.default_rng(1)
+    near_one = 1.0 + rng.uniform(-1.0e-3, 1.0e-3, 800)
+    return np.concatenate([np.exp(rng.uniform(-700.0, 700.0, 8000)), near_one, rng.uniform(0.5, 2.0, 8000)])
+
+
+def test_they_agree_with_numpy_to_the_last_digits(numbers):
+    exponents = np.random.default_rng(2).uniform(-707.0, 708.0, numbers.size)
+    exponents[: numbers.size // 2] /= 700.0
+    results = np.zeros((3, numbers.size))
+    compute(numbers, exponents, *results)
+    np.testing.assert_allclose(results[0], np.exp(exponents), rtol=LAST_DIGITS)
+    np.testing.assert_allclose(results[1], np.log(numbers), rtol=LAST_DIGITS)
+    # the error of the logarithm, times the power of e
+    powers = numbers**0.31
+    allowed = LAST_DIGITS * (1.0 + np.abs(np.log(powers)))
+    assert (np.abs(results[2] / powers - 1.0) < allowed).all()
+
+
+def test_in_python_they_are_the_same():
+    x = np.array([0.1, 0.9999, 1.0, 1.5, 2.0, 3.0, 1.0e-9, 1.0e9])
+    exponentials, logarithms, powers = np.zeros((3, 8))
+    compute(x, np.log(x), exponentials, logarithms, powers)
+    np.testing.assert_allclose(elementary.logarithm(Lanes(*x)).numbers, logarithms, rtol=LAST_DIGITS)
+    np.testing.assert_allclose(
+        elementary.exponential(Lanes(*np.log(x))).numbers, exponentials, rtol=LAST_DIGITS
+    )
+    np.testing.assert_allclose(elementary.power(Lanes(*x), 0.31).numbers, powers, rtol=1.0e-15)
+
+
+@kernel
+def at_the_edges(x, y, exponentials, logarithms, powers, roots):
+    p = Eight(0)
+    exponentials[p] = math.exp(x[p])
+    logarithms[p] = math.log(y[p])
+    powers[p] = y[p] ** 0.5
+    roots[p] = y[p] ** 0.0
+
+
+def test_what_lies_at_the_edges():
+    x = np.array([0.0, -0.0, 1000.0, -1000.0, math.inf, -math.inf, math.nan, 1.0])
+    y = np.array([0.0, 1.0, -1.0, math.inf, math.nan, 4.0, 2.5e-308, 1.0e308])
+    exponentials, logarithms, powers, ones = np.zeros((4, 8))
+    at_the_edges(x, y, exponentials, logarithms, powers, ones)
+    np.testing.assert_allclose(
+        exponentials, [1.0, 1.0, math.inf, 0.0, math.inf, 0.0, math.nan, math.e], rtol=LAST_DIGITS
+    )
+    with np.errstate(all="ignore"):
+        np.testing.assert_allclose(logarithms, np.log(y), rtol=LAST_DIGITS)
+        np.testing.assert_allclose(powers, np.sqrt(y), rtol=1.0e-13)
+    np.testing.assert_array_equal(ones, 1.0)
