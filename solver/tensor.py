@@ -11,6 +11,7 @@ import math
 from typing import Any, NamedTuple
 
 from solver.dispatch import inline
+from solver.lanes import anywhere, where
 
 
 class Tensor:
@@ -277,14 +278,14 @@ def rotation(F: Tensor) -> Tensor:
     R = F * math.sqrt(3.0 / double_dot(F, F))
     E = green_strain(R)
     error = double_dot(E, E)
+    improves = error > ROTATION_ERROR
     for _ in range(MOST_ITERATIONS):
-        if error <= ROTATION_ERROR:
+        if not anywhere(improves):
             break
-        R = R @ (identity - E)
+        R = where(improves, R @ (identity - E), R)
         E = green_strain(R)
         improved = double_dot(E, E)
-        if improved >= error:
-            break
+        improves = improves & (improved < error) & (improved > ROTATION_ERROR)
         error = improved
     return R
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from solver.dispatch import inline
+from solver.dispatch import inline, singly, takes_lanes
 from solver.jit import kernel
 from solver.kernels.chunks import CHUNK
+from solver.lanes import WIDTH, Eight, everywhere, floor, largest_of, sum_of, where
 from solver.materials.constitutive import Material, Point, Step, stress_update
-from solver.materials.failure import Failure, restrained, weakened
+from solver.materials.failure import Failure, restrained, restrains, weakened, weakens
 from solver.particles import Particles
 from solver.tensor import Tensor, determinant, isotropic, norm, put_tensor, tensor_at
 
@@ -22,14 +23,17 @@ class Kinematics(NamedTuple):
     stabilize_pressure: bool
 
 
+MOST_SUBCYCLES = 10000.0
+
+
 @inline
 def new_deformation_gradient(F: Tensor, L: Tensor, dt: float, subcycles: int) -> Tensor:
     """F at the end of the step from the velocity gradient L."""
     if subcycles > 0:
-        n = min(max(subcycles, 2 * int(norm(L) * dt)), 10000)
+        n = min(max(1.0 * subcycles, 2.0 * floor(norm(L) * dt)), MOST_SUBCYCLES)
         increment = isotropic(1.0) + L * (dt / n)
-        for _ in range(n):
-            F = increment @ F
+        for k in range(int(largest_of(n))):
+            F = where(k < n, increment @ F, F)
         return F
     series = isotropic(1.0)
     term = isotropic(1.0)
@@ -79,8 +83,113 @@ def total(sums: Any) -> Stressed:
     return Stressed(float(energy), float(volume), (float(x), float(y), float(z)), bool(sums[:, 5].all()))
 
 
+class Passed(NamedTuple):
+    """What a particle adds to a :class:`Stressed`, or eight of them in lanes."""
+
+    strain_energy: float
+    volume: float
+    wave_x: float
+    wave_y: float
+    wave_z: float
+    finite: bool
+
+
+@singly
+def stretch_of_cell(cell_stretch: Any, cells: Any, p: int) -> float:
+    """The det F averaged over the cell of a particle."""
+    return cell_stretch[cells[p]]
+
+
+@inline
+def update_stress(
+    model: Any,
+    state: Any,
+    failure: Failure,
+    particles: Particles,
+    p: Any,
+    material: Material,
+    step: Step,
+    kinematics: Kinematics,
+    cells: Any,
+    cell_stretch: Any,
+) -> Passed:
+    """Deform particle ``p``, or eight of them, and ask their constitutive model for the stress."""
+    dt = step.dt
+    F_old = tensor_at(particles.deformation_gradient, p)
+    L = tensor_at(particles.velocity_gradient, p)
+    F = new_deformation_gradient(F_old, L, dt, kinematics.subcycles)
+    J, J_old = determinant(F), determinant(F_old)
+    volume_old = particles.volume[p]
+    volume = volume_old * J / J_old
+    if kinematics.stabilize_pressure:
+        J_cell = stretch_of_cell(cell_stretch, cells, p)
+        F = F * (J_cell / J) ** (1.0 / 3.0)
+        L = L + isotropic(math.log(J_cell / J) / (3.0 * dt))
+        put_tensor(particles.velocity_gradient, p, L)
+    temperature = particles.temperature[p]
+    point = Point(
+        tensor_at(particles.stress, p),
+        F_old,
+        F,
+        L,
+        volume_old,
+        volume,
+        particles.mass[p],
+        temperature,
+        particles.previous_temperature[p],
+        particles.localized[p],
+    )
+    if restrains(failure):
+        point = restrained(failure, point)
+    new = stress_update(model, state, p, point, material, step)
+    stress, localized = new.stress, new.localized
+    if weakens(failure):
+        damaged = weakened(failure, model, state, p, point, stress, localized, material, step)
+        stress, localized = damaged.stress, damaged.localized
+    put_tensor(particles.deformation_gradient, p, point.deformation_gradient)
+    put_tensor(particles.stress, p, stress)
+    particles.volume[p] = volume
+    particles.artificial_pressure[p] = new.artificial_pressure
+    particles.heating_rate[p] = new.heating_rate
+    particles.localized[p] = localized
+    particles.previous_temperature[p] = temperature
+    particles.temperature[p] = temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
+    c = new.sound_speed
+    x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
+    return Passed(
+        new.strain_energy,
+        volume,
+        c + abs(particles.old_velocity[p, 0]),
+        c + abs(particles.old_velocity[p, 1]),
+        c + abs(particles.old_velocity[p, 2]),
+        math.isfinite(norm(stress) + c + x + y + z),
+    )
+
+
+@inline
+def empty(sums: Any, chunk: int) -> None:
+    """Make the sums of a chunk those of no particles."""
+    row = sums[chunk]
+    row[0] = row[1] = 0.0
+    row[2] = row[3] = row[4] = 1.0e-12
+    row[5] = 1.0
+
+
+@inline
+def count(passed: Passed, sums: Any, chunk: int) -> None:
+    """Add a particle, or eight, to the sums and extremes of a chunk."""
+    row = sums[chunk]
+    row[0] += sum_of(passed.strain_energy)
+    row[1] += sum_of(passed.volume)
+    row[2] = max(row[2], largest_of(passed.wave_x))
+    row[3] = max(row[3], largest_of(passed.wave_y))
+    row[4] = max(row[4], largest_of(passed.wave_z))
+    if not everywhere(passed.finite):
+        row[5] = 0.0
+
+
 @kernel
-def update_stresses(
+def update_singly(
     model: Any,
     state: Any,
     failure: Failure,
@@ -94,64 +203,62 @@ def update_stresses(
     last: int,
     sums: Any,
 ) -> None:
+    """:func:`update_stresses`, one particle after the other."""
+    for chunk in range(first, last):
+        empty(sums, chunk)
+        for p in range(chunk * CHUNK, min((chunk + 1) * CHUNK, particles.mass.shape[0])):
+            passed = update_stress(
+                model, state, failure, particles, p, material, step, kinematics, cells, cell_stretch
+            )
+            count(passed, sums, chunk)
+
+
+@kernel
+def update_by_eight(
+    model: Any,
+    state: Any,
+    failure: Failure,
+    particles: Particles,
+    material: Material,
+    step: Step,
+    kinematics: Kinematics,
+    cells: Any,
+    cell_stretch: Any,
+    first: int,
+    last: int,
+    sums: Any,
+) -> None:
+    """:func:`update_stresses` of eight particles at once, and one after the other where fewer are left."""
+    for chunk in range(first, last):
+        empty(sums, chunk)
+        end = min((chunk + 1) * CHUNK, particles.mass.shape[0])
+        rest = end - (end - chunk * CHUNK) % WIDTH
+        for start in range(chunk * CHUNK, rest, WIDTH):
+            passed = update_stress(
+                model,
+                state,
+                failure,
+                particles,
+                Eight(start),
+                material,
+                step,
+                kinematics,
+                cells,
+                cell_stretch,
+            )
+            count(passed, sums, chunk)
+        for p in range(rest, end):
+            passed_one = update_stress(
+                model, state, failure, particles, p, material, step, kinematics, cells, cell_stretch
+            )
+            count(passed_one, sums, chunk)
+
+
+def update_stresses(model: Any, *rest: Any) -> None:
     """Deformation gradients, volumes, stresses and temperatures at the end of the step.
 
     ``cell_stretch`` holds det F averaged over each cell, used where pressure is stabilized. Does the chunks ``first``
     to ``last`` of particles and stores in ``sums`` (chunks, STRESS_SUMS) each one's :class:`Stressed`.
     """
-    dt = step.dt
-    for chunk in range(first, last):
-        energy = total_volume = 0.0
-        wx = wy = wz = 1.0e-12
-        finite = True
-        for p in range(chunk * CHUNK, min((chunk + 1) * CHUNK, particles.mass.shape[0])):
-            F_old = tensor_at(particles.deformation_gradient, p)
-            L = tensor_at(particles.velocity_gradient, p)
-            F = new_deformation_gradient(F_old, L, dt, kinematics.subcycles)
-            J, J_old = determinant(F), determinant(F_old)
-            volume_old = particles.volume[p]
-            volume = volume_old * J / J_old
-            if kinematics.stabilize_pressure:
-                J_cell = cell_stretch[cells[p]]
-                F = F * (J_cell / J) ** (1.0 / 3.0)
-                L = L + isotropic(math.log(J_cell / J) / (3.0 * dt))
-                put_tensor(particles.velocity_gradient, p, L)
-            point = Point(
-                tensor_at(particles.stress, p),
-                F_old,
-                F,
-                L,
-                volume_old,
-                volume,
-                particles.mass[p],
-                particles.temperature[p],
-                particles.previous_temperature[p],
-                particles.localized[p],
-            )
-            point = restrained(failure, point)
-            new = stress_update(model, state, p, point, material, step)
-            new = weakened(failure, model, state, p, point, new, material, step)
-            put_tensor(particles.deformation_gradient, p, point.deformation_gradient)
-            put_tensor(particles.stress, p, new.stress)
-            particles.volume[p] = volume
-            particles.artificial_pressure[p] = new.artificial_pressure
-            particles.heating_rate[p] = new.heating_rate
-            particles.localized[p] = new.localized
-            temperature = particles.temperature[p]
-            particles.previous_temperature[p] = temperature
-            particles.temperature[p] = (
-                temperature + particles.temperature_rate[p] * dt + new.heating_rate * dt
-            )
-            energy += new.strain_energy
-            total_volume += volume
-            c = new.sound_speed
-            wx = max(wx, c + abs(particles.old_velocity[p, 0]))
-            wy = max(wy, c + abs(particles.old_velocity[p, 1]))
-            wz = max(wz, c + abs(particles.old_velocity[p, 2]))
-            x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
-            if not math.isfinite(norm(new.stress) + c + x + y + z):
-                finite = False
-        row = sums[chunk]
-        row[0], row[1] = energy, total_volume
-        row[2], row[3], row[4] = wx, wy, wz
-        row[5] = 1.0 if finite else 0.0
+    update = update_by_eight if takes_lanes(stress_update, model) else update_singly
+    update(model, *rest)

@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import generic, implements, inline
+from solver.dispatch import generic, implements, inline, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.constitutive import (
     Material,
     NoState,
@@ -237,23 +238,26 @@ def radial_return(
     s = G * deviator(stretch)
     size = norm(s)
     overstress = size - math.sqrt(2.0 / 3.0) * (H * state.plastic_strain[p] + yield_stress)
-    if overstress > 0.0:
+    yields = overstress > 0.0
+    if anywhere(yields):
         mean_modulus = G * mean_stretch
         slip = overstress / (2.0 * mean_modulus) / (1.0 + H / (3.0 * mean_modulus))
-        s = s - s * (2.0 * mean_modulus * slip / size)
-        stretch = s / G + isotropic(mean_stretch)
-        state.plastic_strain[p] += math.sqrt(2.0 / 3.0) * slip
+        s = where(yields, s - s * (2.0 * mean_modulus * slip / size), s)
+        stretch = where(yields, s / G + isotropic(mean_stretch), stretch)
+        state.plastic_strain[p] += where(yields, math.sqrt(2.0 / 3.0) * slip, 0.0)
     put_tensor(state.elastic_stretch, p, stretch)
     return Isochoric(s, trace(stretch))
 
 
 @implements(isochoric_response, NoState)
+@lanewise
 def elastic_response(state: Any, model: NeoHookean, p: int, point: Point) -> Isochoric:
     """The response of a material that cannot yield."""
     return elastic_shear(model.shear_modulus, point.deformation_gradient)
 
 
 @implements(isochoric_response, PlasticState)
+@lanewise
 def plastic_response(state: Any, model: Any, p: int, point: Point) -> Isochoric:
     """The response of a material that can, each particle at its own yield stress."""
     return radial_return(state, p, point, model.shear_modulus, state.yield_stress[p], model.hardening_modulus)
@@ -281,13 +285,11 @@ def neo_hookean_update(
     J = determinant(point.deformation_gradient)
     mean_stress = 0.5 * K * ((J - 1.0 / J) - (J_thermal - 1.0 / J_thermal))
     density = material.density / J
-    energy = 0.0
-    if point.localized == 0:
-        energy = neo_hookean_energy(J, shear.stretch_trace, K, G) * point.volume / J
+    energy = neo_hookean_energy(J, shear.stretch_trace, K, G) * point.volume / J
     return StressUpdate(
         stress=isotropic(mean_stress) + shear.kirchhoff / J,
         sound_speed=math.sqrt((K + 4.0 * G / 3.0) / density),
-        strain_energy=energy,
+        strain_energy=where(point.localized == 0, energy, 0.0),
         heating_rate=0.0,
         artificial_pressure=artificial_viscosity(
             step, trace(point.velocity_gradient), math.sqrt(K / density), density
@@ -297,6 +299,7 @@ def neo_hookean_update(
 
 
 @implements(stress_update, CompNeoHook, CompNeoHookPlastic)
+@lanewise
 def neo_hookean_stress(
     model: NeoHookean, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from solver.dispatch import generic, inline
 from solver.grid import GridIndex
+from solver.lanes import where
 from solver.particles import Particles
 from solver.tensor import Tensor
 
@@ -163,9 +164,10 @@ def artificial_viscosity(
 
     q = rho (A1 c |D h| + A2 D^2 h^2) where D = tr d < 0, else 0.
     """
-    if not step.artificial_viscosity or dilatation_rate >= 0.0:
+    if not step.artificial_viscosity:
         return 0.0
     stretch = dilatation_rate * step.length
-    return density * (
+    pressure = density * (
         step.viscosity_linear * bulk_sound_speed * abs(stretch) + step.viscosity_quadratic * stretch * stretch
     )
+    return where(dilatation_rate < 0.0, pressure, 0.0)

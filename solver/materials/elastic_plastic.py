@@ -9,7 +9,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise, singly
+from solver.lanes import anywhere, like, negation, where
 from solver.materials.constitutive import (
     DELETE,
     Material,
@@ -274,36 +275,23 @@ class Flow(NamedTuple):
 
 
 @implements(stress_update, ElasticPlastic)
+@lanewise
 @inline
 def elastic_plastic_stress(
     model: ElasticPlastic, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
     """Stress, heating, internal energy and failure of one particle, in Uintah's order of operations."""
     J = determinant(point.deformation_gradient)
-    if not (0.0 < J <= LARGEST_EXPANSION):
-        return given_up(model, J, material)
-    motion = kinematics(point, tensor_at(state.rotation, p), material.density / J)
+    motion = kinematics(point, tensor_at(state.rotation, p), material.density / possible_ratio(J))
     old_stress = to_material(motion.old_rotation, point.stress)
     start = plasticity_state(model, state, p, point, material, motion, trace(old_stress) / 3.0)
+    elements = state[OWN_FIELDS:]
     trial = deviator(old_stress) + stress_increment(
-        model.deviatoric_stress_model,
-        state[OWN_FIELDS:],
-        p,
-        motion.rate_deviator,
-        start.shear_modulus,
-        step.dt,
+        model.deviatoric_stress_model, elements, p, motion.rate_deviator, start.shear_modulus, step.dt
     )
     flow = deviatoric_flow(model, state, p, start, motion, old_stress, trial, start.shear_modulus, step.dt)
-    dissipation = 0.0
-    if not flow.melted:
-        elastic_rate = motion.rate_deviator - flow.plastic_increment / step.dt
-        dissipation = relax(
-            model.deviatoric_stress_model,
-            state[OWN_FIELDS:],
-            p,
-            elastic_rate,
-            step.dt,
-        )
+    elastic_rate = motion.rate_deviator - flow.plastic_increment / step.dt
+    dissipation = relax(model.deviatoric_stress_model, elements, p, flow.melted, elastic_rate, step.dt)
     pressure = mean_stress(model.equation_of_state, start, motion.dilatation_rate * step.dt)
     stress = flow.stress_deviator + isotropic(pressure)
     viscous = artificial_viscosity(
@@ -312,26 +300,24 @@ def elastic_plastic_stress(
     porosity = grown_porosity(model, state.porosity[p], flow, motion, step.dt)
     localized = point.localized
     if model.failure_is_checked:
-        if localized == 0 and fails(model, start, flow, stress, motion, porosity):
-            localized = 1
-        if localized != 0:
-            porosity = 0.0
+        failed = (localized != 0) | fails(model, start, flow, stress, motion, porosity)
+        localized = where(failed & (localized == 0), 1, localized)
+        porosity = where(failed, 0.0, porosity)
     laboratory_stress = to_laboratory(motion.rotation, stress)
-    work = 0.0
-    if localized == 0:
-        work = internal_work(point, motion, laboratory_stress, step.dt)
-        if step.viscosity_heating:
-            work_of_viscosity = viscous * (point.volume - point.volume_old) / point.mass
-            state.energy[p] += work / point.mass - work_of_viscosity
-        else:
-            state.energy[p] += work / point.mass
+    sound = localized == 0
+    work = where(sound, internal_work(point, motion, laboratory_stress, step.dt), 0.0)
+    heat = work / point.mass
+    if step.viscosity_heating:
+        work_of_viscosity = viscous * (point.volume - point.volume_old) / point.mass
+        heat = where(sound, heat - work_of_viscosity, 0.0)
+    state.energy[p] += heat
     put_tensor(state.rotation, p, motion.rotation)
     state.strain_rate[p] = start.strain_rate
     state.plastic_strain[p] = flow.plastic_strain
     state.plastic_strain_rate[p] = flow.plastic_strain_rate
     state.alpha[p] += math.sqrt(2.0 / 3.0) * flow.multiplier
     state.porosity[p] = porosity
-    return StressUpdate(
+    answer = StressUpdate(
         stress=laboratory_stress,
         sound_speed=math.sqrt((model.bulk_modulus + 4.0 * start.shear_modulus / 3.0) / motion.density),
         strain_energy=work,
@@ -339,17 +325,38 @@ def elastic_plastic_stress(
         artificial_pressure=viscous,
         localized=localized,
     )
+    return without_impossible(model, J, material, answer)
 
 
 @inline
-def given_up(model: Any, J: float, material: Material) -> StressUpdate:
-    """The answer for a particle of impossible volume: it is removed.
+def is_possible(J: float) -> bool:
+    """Whether a particle can have that ratio of volumes."""
+    return (J > 0.0) & (J <= LARGEST_EXPANSION)
 
-    As in Uintah it still holds back the next step by waves in what it became, where that is a number.
+
+@inline
+def possible_ratio(J: float) -> float:
+    """The ratio of volumes, or 1 where that is impossible: what becomes of such a particle is decided at the end."""
+    return where(is_possible(J), J, 1.0)
+
+
+@inline
+def without_impossible(model: Any, J: float, material: Material, answer: StressUpdate) -> StressUpdate:
+    """The answer, but for a particle of impossible volume, which is removed.
+
+    As in Uintah that still holds back the next step by waves in what it became, where that is a number.
     """
+    possible = is_possible(J)
     modulus = model.bulk_modulus + 4.0 * model.shear_modulus / 3.0
-    c = math.sqrt(modulus * J / material.density) if 0.0 < J < math.inf else 0.0
-    return StressUpdate(isotropic(0.0), c, 0.0, 0.0, 0.0, DELETE)
+    c = math.sqrt(modulus * where((J > 0.0) & (math.inf > J), J, 0.0) / material.density)
+    return StressUpdate(
+        where(possible, answer.stress, isotropic(0.0)),
+        where(possible, answer.sound_speed, c),
+        where(possible, answer.strain_energy, 0.0),
+        where(possible, answer.heating_rate, 0.0),
+        where(possible, answer.artificial_pressure, 0.0),
+        where(possible, answer.localized, DELETE),
+    )
 
 
 @inline
@@ -392,14 +399,11 @@ def plasticity_state(
     )
     heat = constant.specific_heat
     if model.compute_specific_heat:
-        heat = specific_heat(model.specific_heat_model, constant)
-        if not heat > 0.0:
-            heat = constant.specific_heat
+        found = specific_heat(model.specific_heat_model, constant)
+        heat = where(found > 0.0, found, heat)
     melt = melting_temperature(model.melting_temp_model, constant)
     at_melt = with_thermal_properties(constant, heat, melt, model.shear_modulus)
-    stiffness = shear_modulus(model.shear_modulus_model, at_melt)
-    if stiffness < LEAST_SHEAR_MODULUS:
-        stiffness = LEAST_SHEAR_MODULUS
+    stiffness = max(LEAST_SHEAR_MODULUS, shear_modulus(model.shear_modulus_model, at_melt))
     return with_thermal_properties(at_melt, heat, melt, stiffness)
 
 
@@ -420,9 +424,7 @@ def deviatoric_flow(
     ``trial`` is the deviator of an elastic step, from which plastic strain takes 2 ``stiffness`` times
     itself. The yield surface is that of the plastic strain which the old plastic strain rate leads to.
     """
-    zero = isotropic(0.0)
-    if model.do_melting and start.temperature > start.melt_temperature:
-        return Flow(zero, False, True, start.plastic_strain, 0.0, 0.0, 0.0, zero)
+    melted = (start.temperature > start.melt_temperature) & model.do_melting
     expected_strain = start.plastic_strain + start.plastic_strain_rate * dt
     expected = at_plastic_strain(start, expected_strain, start.plastic_strain_rate)
     flow_model = in_step(model.flow_model, start)
@@ -431,9 +433,12 @@ def deviatoric_flow(
     porosity = state.porosity[p]
     equivalent = math.sqrt(1.5) * norm(trial)
     surface = yield_value(model.yield_condition, equivalent, stress_trace, sigma_y, porosity)
-    if surface.function < 0.0:
-        return Flow(trial, False, False, start.plastic_strain, 0.0, sigma_y, 0.0, zero)
+    plastic = negation(melted | (surface.function < 0.0))
+    flow = elastic_flow(start, trial, melted, sigma_y)
+    if not anywhere(plastic):
+        return flow
     plastic_trial = PlasticTrial(
+        plastic,
         old_stress,
         trial,
         motion.rate_deviator,
@@ -444,21 +449,37 @@ def deviatoric_flow(
         stiffness,
     )
     end = return_to_yield(model.plastic_convergence_algo, flow_model, start, plastic_trial, dt)
-    return plastic_flow(end)
+    return plastic_flow(flow, plastic, end)
 
 
 @inline
-def plastic_flow(end: PlasticReturn) -> Flow:
-    """The answer of a return algorithm as the flow of a step."""
+def elastic_flow(start: PlasticityState, trial: Tensor, melted: bool, sigma_y: float) -> Flow:
+    """No plastic flow: the trial deviator, or none where the material melted."""
+    zero = like(0.0, sigma_y)
     return Flow(
-        end.stress_deviator,
-        True,
-        False,
-        end.plastic_strain,
-        end.plastic_strain_rate,
-        end.flow_stress,
-        end.multiplier,
-        end.plastic_increment,
+        where(melted, isotropic(zero), trial),
+        like(False, melted),
+        melted,
+        start.plastic_strain,
+        zero,
+        where(melted, 0.0, sigma_y),
+        zero,
+        isotropic(zero),
+    )
+
+
+@inline
+def plastic_flow(elastic: Flow, plastic: bool, end: PlasticReturn) -> Flow:
+    """The answer of a return algorithm as the flow of a step, where there is plastic flow."""
+    return Flow(
+        where(plastic, end.stress_deviator, elastic.stress_deviator),
+        plastic,
+        elastic.melted,
+        where(plastic, end.plastic_strain, elastic.plastic_strain),
+        where(plastic, end.plastic_strain_rate, elastic.plastic_strain_rate),
+        where(plastic, end.flow_stress, elastic.flow_stress),
+        where(plastic, end.multiplier, elastic.multiplier),
+        where(plastic, end.plastic_increment, elastic.plastic_increment),
     )
 
 
@@ -479,9 +500,7 @@ def heating(
     rate = isentropic_heating(model.equation_of_state, start, motion.dilatation_rate) + to_heat * dissipation
     if step.viscosity_heating:
         rate -= viscous_pressure * motion.dilatation_rate / motion.density / start.specific_heat
-    if flow.plastic:
-        rate += to_heat * flow.flow_stress * flow.plastic_strain_rate
-    return rate
+    return rate + where(flow.plastic, to_heat * flow.flow_stress * flow.plastic_strain_rate, 0.0)
 
 
 @inline
@@ -495,14 +514,15 @@ def nucleation(model: Any, plastic_strain: float) -> float:
 @inline
 def grown_porosity(model: Any, porosity: float, flow: Flow, motion: Kinematics, dt: float) -> float:
     """Porosity after a plastic step: growth (1 - f) tr(d) in expansion and nucleation by shear."""
-    if not (flow.plastic and model.evolve_porosity):
+    if not (model.evolve_porosity and anywhere(flow.plastic)):
         return porosity
     growth = (1.0 - porosity) * max(0.0, motion.dilatation_rate)
     shear_rate = norm(motion.rate_deviator) / math.sqrt(1.5)
-    return porosity + dt * (nucleation(model, flow.plastic_strain) * shear_rate + growth)
+    rate = nucleation(model, flow.plastic_strain) * shear_rate + growth
+    return where(flow.plastic, porosity + dt * rate, porosity)
 
 
-@inline
+@singly
 def fails(
     model: Any,
     start: PlasticityState,

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from solver.dispatch import generic_with_default, inline
-from solver.materials.constitutive import DELETE, Material, Point, Step, StressUpdate
-from solver.materials.damage import DamagePoint, counts_strain, damage_state, scalar_damage, update_damage
+from solver.dispatch import generic_with_default, inline, singly
+from solver.materials.constitutive import DELETE, Material, Point, Step
+from solver.materials.damage import (
+    DamagePoint,
+    DamageUpdate,
+    counts_strain,
+    damage_state,
+    damages,
+    scalar_damage,
+    update_damage,
+)
 from solver.materials.damage.no_damage import NoDamage
 from solver.materials.erosion import ErosionState, erode, lets_fail, restrain
 from solver.materials.erosion.no_erosion import NoErosion
 from solver.particles import new_arrays
+from solver.tensor import Tensor
 
 
 class Failure(NamedTuple):
@@ -56,9 +65,21 @@ def check_flows(damage: str, constitutive_model: Any) -> None:
 
 
 @inline
+def restrains(failure: Failure) -> bool:
+    """Whether particles that failed move otherwise than the others."""
+    return lets_fail(failure.erosion)
+
+
+@inline
+def weakens(failure: Failure) -> bool:
+    """Whether damage or erosion can change the answer of the constitutive model."""
+    return damages(failure.damage) or lets_fail(failure.erosion)
+
+
+@singly
 def restrained(failure: Failure, point: Point) -> Point:
     """The particle with the motion that its erosion algorithm leaves it, where it failed before the step."""
-    if not lets_fail(failure.erosion) or point.localized == 0:
+    if point.localized == 0:
         return point
     motion = restrain(
         failure.erosion,
@@ -80,29 +101,30 @@ def restrained(failure: Failure, point: Point) -> Point:
     )
 
 
-@inline
+@singly
 def weakened(
     failure: Failure,
     model: Any,
     state: Any,
     p: int,
     point: Point,
-    new: StressUpdate,
+    stress: Tensor,
+    localized: int,
     material: Material,
     step: Step,
-) -> StressUpdate:
-    """The answer of the constitutive model after damage and erosion."""
+) -> DamageUpdate:
+    """Stress and failure state, those of the constitutive model, after damage and erosion."""
     damaged = update_damage(
         failure.damage,
         failure.damage_state,
         p,
         DamagePoint(
-            new.stress,
+            stress,
             point.deformation_gradient,
             plastic_strain_rate(model, state, p),
             point.temperature,
             point.volume,
-            new.localized,
+            localized,
         ),
         material,
         step,
@@ -117,11 +139,4 @@ def weakened(
             failure.erosion_state.failure_time[p] = step.time
         if localized != 0:
             stress = erode(failure.erosion, stress, step.time - failure.erosion_state.failure_time[p])
-    return StressUpdate(
-        stress,
-        new.sound_speed,
-        new.strain_energy,
-        new.heating_rate,
-        new.artificial_pressure,
-        localized,
-    )
+    return DamageUpdate(stress, localized)

@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -22,17 +23,17 @@ from solver.materials.constitutive import (
 from solver.materials.distribution import draw
 from solver.materials.distribution.constant import Constant
 from solver.materials.elastic_plastic import (
-    LARGEST_EXPANSION,
     Kinematics,
     breaks,
     deviatoric_flow,
     fails,
-    given_up,
     grown_porosity,
     heating,
     internal_work,
     metal_faults,
     plasticity_state,
+    possible_ratio,
+    without_impossible,
 )
 from solver.materials.equation_of_state import mean_stress
 from solver.materials.equation_of_state.default_hyper import DefaultHyper
@@ -181,28 +182,25 @@ def carried(stretch: Tensor, F_old: Tensor, F: Tensor) -> Tensor:
 
 
 @implements(stress_update, HyperElasticPlastic)
+@lanewise
 def hyperelastic_plastic_stress(
     model: HyperElasticPlastic, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
     """Stress, heating, internal energy and failure of one particle, all in the fixed frame."""
     J = determinant(point.deformation_gradient)
-    if not (0.0 < J <= LARGEST_EXPANSION):
-        return given_up(model, J, material)
     d = symmetric(point.velocity_gradient)
     unturned = isotropic(1.0)
-    motion = Kinematics(unturned, unturned, d, deviator(d), trace(d), material.density / J)
+    motion = Kinematics(unturned, unturned, d, deviator(d), trace(d), material.density / possible_ratio(J))
     start = plasticity_state(model, state, p, point, material, motion, trace(point.stress) / 3.0)
     stretch = carried(
         tensor_at(state.elastic_stretch, p), point.deformation_gradient_old, point.deformation_gradient
     )
     mean_stretch = trace(stretch) / 3.0
-    mu = start.shear_modulus / J
+    mu = start.shear_modulus / possible_ratio(J)
     trial = mu * deviator(stretch)
     flow = deviatoric_flow(model, state, p, start, motion, point.stress, trial, mu * mean_stretch, step.dt)
-    if flow.melted:
-        stretch = isotropic(mean_stretch)
-    elif flow.plastic:
-        stretch = flow.stress_deviator * (1.0 / mu) + isotropic(mean_stretch)
+    returned = flow.stress_deviator * (1.0 / mu) + isotropic(mean_stretch)
+    stretch = where(flow.plastic, returned, where(flow.melted, isotropic(mean_stretch), stretch))
     stress = flow.stress_deviator + isotropic(
         mean_stress(model.equation_of_state, start, motion.dilatation_rate * step.dt)
     )
@@ -212,22 +210,22 @@ def hyperelastic_plastic_stress(
     porosity = grown_porosity(model, state.porosity[p], flow, motion, step.dt)
     localized = point.localized
     if model.failure_is_checked:
-        if localized == 0 and fails(model, start, flow, stress, motion, porosity):
-            localized = 1
-        if localized != 0:
-            porosity = 0.0
-    work = 0.0
-    if localized == 0:
-        work = internal_work(point, motion, stress, step.dt)
-        state.energy[p] += work / point.mass
-        if step.viscosity_heating:
-            state.energy[p] -= viscous * (point.volume - point.volume_old) / point.mass
+        failed = (localized != 0) | fails(model, start, flow, stress, motion, porosity)
+        localized = where(failed & (localized == 0), 1, localized)
+        porosity = where(failed, 0.0, porosity)
+    sound = localized == 0
+    work = where(sound, internal_work(point, motion, stress, step.dt), 0.0)
+    heat = work / point.mass
+    if step.viscosity_heating:
+        work_of_viscosity = viscous * (point.volume - point.volume_old) / point.mass
+        heat = where(sound, heat - work_of_viscosity, 0.0)
+    state.energy[p] += heat
     put_tensor(state.elastic_stretch, p, stretch)
     state.strain_rate[p] = start.strain_rate
     state.plastic_strain[p] = flow.plastic_strain
     state.plastic_strain_rate[p] = flow.plastic_strain_rate
     state.porosity[p] = porosity
-    return StressUpdate(
+    answer = StressUpdate(
         stress=stress,
         sound_speed=math.sqrt((model.bulk_modulus + 4.0 * start.shear_modulus / 3.0) / motion.density),
         strain_energy=work,
@@ -235,3 +233,4 @@ def hyperelastic_plastic_stress(
         artificial_pressure=viscous,
         localized=localized,
     )
+    return without_impossible(model, J, material, answer)

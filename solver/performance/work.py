@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
 from solver.interpolation.stencil import direction
-from solver.kernels.stress import STRESS_SUMS, Kinematics, update_stresses
+from solver.kernels.stress import STRESS_SUMS, Kinematics, update_singly
 from solver.kernels.transfer import CHANNELS, GATHERED
 from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
@@ -224,7 +224,7 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
     failure = body.failure._replace(damage_state=damage, erosion_state=erosion)
     try:
         operations = operations_of(
-            update_stresses.py_func,  # type: ignore[attr-defined]  # numba keeps the function as it was written
+            update_singly.py_func,  # type: ignore[attr-defined]  # numba keeps the function as it was written
             body.model,
             state,
             failure,

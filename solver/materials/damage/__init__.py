@@ -60,6 +60,12 @@ def update_damage(
 
 
 @generic_with_default
+def damages(model: Any) -> bool:
+    """Whether a model changes anything: a constant, for which kernels leave out what needs it."""
+    return True
+
+
+@generic_with_default
 def counts_strain(model: Any) -> bool:
     """Whether a model has a :func:`scalar_damage`: a constant, for which kernels of others leave out what needs it."""
     return False

@@ -7,12 +7,17 @@ from typing import Any, NamedTuple
 from solver.declare import model
 from solver.dispatch import implements
 from solver.materials.constitutive import Material, Step
-from solver.materials.damage import DamagePoint, DamageUpdate, update_damage
+from solver.materials.damage import DamagePoint, DamageUpdate, damages, update_damage
 
 
 @model("damage", "none")
 class NoDamage(NamedTuple):
     """The material is not damaged."""
+
+
+@implements(damages, NoDamage)
+def _(model: NoDamage) -> bool:
+    return False
 
 
 @implements(update_damage, NoDamage)

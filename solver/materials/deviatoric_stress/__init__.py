@@ -30,8 +30,8 @@ def stress_increment(
 
 
 @generic
-def relax(model: Any, elements: Any, p: int, elastic_rate: Tensor, dt: float) -> float:
-    """Bring the Maxwell elements of particle ``p`` to the end of the step.
+def relax(model: Any, elements: Any, p: int, melted: bool, elastic_rate: Tensor, dt: float) -> float:
+    """Bring the Maxwell elements of particle ``p`` to the end of the step, unless it melted.
 
     ``elastic_rate`` is the deviatoric rate of deformation less its plastic part, in the frame of the
     material. Returns the power that the elements dissipate, W/m^3.

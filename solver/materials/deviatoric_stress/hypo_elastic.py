@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.deviatoric_stress import relax, stress_increment
 from solver.tensor import Tensor
 
@@ -16,6 +16,7 @@ class HypoElasticDeviator(NamedTuple):
 
 
 @implements(stress_increment, HypoElasticDeviator)
+@lanewise
 def _(
     model: HypoElasticDeviator, elements: Any, p: int, rate: Tensor, shear_modulus: float, dt: float
 ) -> Tensor:
@@ -23,5 +24,8 @@ def _(
 
 
 @implements(relax, HypoElasticDeviator)
-def _(model: HypoElasticDeviator, elements: Any, p: int, elastic_rate: Tensor, dt: float) -> float:
+@lanewise
+def _(
+    model: HypoElasticDeviator, elements: Any, p: int, melted: bool, elastic_rate: Tensor, dt: float
+) -> float:
     return 0.0

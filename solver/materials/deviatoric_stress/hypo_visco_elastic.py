@@ -47,8 +47,12 @@ def _(
 
 
 @implements(relax, HypoViscoElasticDeviator)
-def _(model: HypoViscoElasticDeviator, elements: Any, p: int, elastic_rate: Tensor, dt: float) -> float:
+def _(
+    model: HypoViscoElasticDeviator, elements: Any, p: int, melted: bool, elastic_rate: Tensor, dt: float
+) -> float:
     power = 0.0
+    if melted:
+        return power
     for j in range(len(model.tau)):
         stress = tensor_at(elements[j], p)
         stress = stress + (2.0 * model.mu[j] * elastic_rate - stress * (1.0 / model.tau[j])) * dt

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.equation_of_state import isentropic_heating, mean_stress, mean_stress_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -16,16 +16,19 @@ class DefaultHypo(NamedTuple):
 
 
 @implements(mean_stress, DefaultHypo)
+@lanewise
 def _(model: DefaultHypo, state: PlasticityState, volumetric_strain: float) -> float:
     return state.mean_stress + state.bulk_modulus * volumetric_strain
 
 
 @implements(mean_stress_slope, DefaultHypo)
+@lanewise
 def _(model: DefaultHypo, state: PlasticityState) -> float:
     """K / J, from J' = J tr(d)."""
     return state.bulk_modulus * state.density / state.initial_density
 
 
 @implements(isentropic_heating, DefaultHypo)
+@lanewise
 def _(model: DefaultHypo, state: PlasticityState, dilatation_rate: float) -> float:
     return 0.0

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.equation_of_state import isentropic_heating, mean_stress, mean_stress_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -33,30 +34,30 @@ def hugoniot_denominator(model: MieGruneisen, eta: float) -> float:
 
 
 @implements(mean_stress, MieGruneisen)
+@lanewise
 def _(model: MieGruneisen, state: PlasticityState, volumetric_strain: float) -> float:
     eta = 1.0 - state.initial_density / state.density
     thermal = state.initial_density * model.Gamma_0 * state.energy
     cold = state.initial_density * model.C_0 * model.C_0 * eta
-    if eta >= 0.0:
-        denominator = hugoniot_denominator(model, eta)
-        cold *= (1.0 - 0.5 * model.Gamma_0 * eta) / (denominator * denominator)
-    return -(thermal + cold)
+    denominator = hugoniot_denominator(model, eta)
+    shocked = cold * ((1.0 - 0.5 * model.Gamma_0 * eta) / (denominator * denominator))
+    return -(thermal + where(eta >= 0.0, shocked, cold))
 
 
 @implements(mean_stress_slope, MieGruneisen)
+@lanewise
 def _(model: MieGruneisen, state: PlasticityState) -> float:
     eta = 1.0 - state.initial_density / state.density
     stiffness = state.initial_density * model.C_0 * model.C_0
-    if eta < 0.0:
-        return stiffness
     denominator = hugoniot_denominator(model, eta)
     steepening = model.S_alpha + 2.0 * model.S_2 * eta + 3.0 * model.S_3 * eta * eta
     linear = 1.0 - model.Gamma_0 * eta
     curved = 2.0 * eta * (1.0 - 0.5 * model.Gamma_0 * eta) * steepening / denominator
-    return stiffness * (linear + curved) / (denominator * denominator)
+    return where(eta < 0.0, stiffness, stiffness * (linear + curved) / (denominator * denominator))
 
 
 @implements(isentropic_heating, MieGruneisen)
+@lanewise
 def _(model: MieGruneisen, state: PlasticityState, dilatation_rate: float) -> float:
     """T' = -Gamma T tr(d) with Gamma = Gamma_0 rho_0 / rho."""
     return -state.temperature * model.Gamma_0 * state.initial_density / state.density * dilatation_rate

@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.flow_stress import flow_stress, hardening_slope, in_step, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -40,20 +41,21 @@ class JohnsonCook(NamedTuple):
 @inline
 def rate_factor(model: JohnsonCook, r: float) -> float:
     """The factor by which the strain rate, r in units of ``epdot_0``, raises the flow stress."""
-    if r < 1.0:
-        return (1.0 + r) ** model.C
-    return 1.0 + model.C * math.log(r)
+    slow = r < 1.0
+    factor = 1.0 + model.C * math.log(max(r, 1.0))
+    if anywhere(slow):
+        factor = where(slow, (1.0 + r) ** model.C, factor)
+    return factor
 
 
 @inline
 def thermal_factor(model: JohnsonCook, temperature: float) -> float:
     """The factor by which temperature lowers the flow stress."""
-    if temperature > model.T_m:
-        return 0.0
     homologous = (temperature - model.T_r) / (model.T_m - model.T_r)
-    if homologous < 0.0:
-        return 1.0 - homologous
-    return 1.0 - homologous**model.m
+    factor = 1.0 - homologous
+    if anywhere(homologous >= 0.0):
+        factor = where(homologous < 0.0, factor, 1.0 - max(homologous, 0.0) ** model.m)
+    return where(temperature > model.T_m, 0.0, factor)
 
 
 class InStep(NamedTuple):
@@ -69,10 +71,11 @@ class InStep(NamedTuple):
 
 
 @implements(in_step, JohnsonCook)
+@lanewise
 def _(model: JohnsonCook, state: PlasticityState) -> InStep:
     r = state.strain_rate / model.epdot_0
     rate = rate_factor(model, r)
-    slope = model.C * rate / (1.0 + r) if r < 1.0 else model.C / r
+    slope = where(r < 1.0, model.C * rate / (1.0 + r), model.C / max(r, 1.0))
     return InStep(model, rate, slope, thermal_factor(model, state.temperature))
 
 
@@ -83,34 +86,40 @@ def hardened(model: JohnsonCook, plastic_strain: float) -> float:
 
 
 @implements(flow_stress, InStep)
+@lanewise
 def _(law: InStep, state: PlasticityState) -> float:
     return hardened(law.model, state.plastic_strain) * law.rate * law.thermal
 
 
 @implements(hardening_slope, InStep)
+@lanewise
 def _(law: InStep, state: PlasticityState) -> float:
-    if state.plastic_strain <= 0.0:
-        return 0.0
+    strained = state.plastic_strain > 0.0
     hardening = law.model.B * state.plastic_strain**law.model.n
-    return law.model.n * hardening * (law.rate * law.thermal) / state.plastic_strain
+    slope = law.model.n * hardening * (law.rate * law.thermal) / where(strained, state.plastic_strain, 1.0)
+    return where(strained, slope, 0.0)
 
 
 @implements(rate_slope, InStep)
+@lanewise
 def _(law: InStep, state: PlasticityState) -> float:
     """Slope by r, the rate in units of ``epdot_0``."""
     return hardened(law.model, state.plastic_strain) * law.thermal * law.slope
 
 
 @implements(flow_stress, JohnsonCook)
+@lanewise
 def _(model: JohnsonCook, state: PlasticityState) -> float:
     return flow_stress(in_step(model, state), state)
 
 
 @implements(hardening_slope, JohnsonCook)
+@lanewise
 def _(model: JohnsonCook, state: PlasticityState) -> float:
     return hardening_slope(in_step(model, state), state)
 
 
 @implements(rate_slope, JohnsonCook)
+@lanewise
 def _(model: JohnsonCook, state: PlasticityState) -> float:
     return rate_slope(in_step(model, state), state)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.melting import melting_temperature
 from solver.materials.plasticity_state import PlasticityState
 
@@ -16,5 +16,6 @@ class ConstantMelting(NamedTuple):
 
 
 @implements(melting_temperature, ConstantMelting)
+@lanewise
 def _(model: ConstantMelting, state: PlasticityState) -> float:
     return state.melt_temperature

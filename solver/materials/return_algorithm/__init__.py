@@ -21,6 +21,8 @@ RETURN_ALGORITHM = family(
 class PlasticTrial(NamedTuple):
     """A step that leaves the yield surface; tensors in the frame of the material."""
 
+    leaves: bool
+    """Which of eight particles do: what becomes of the others does not matter."""
     old_stress: Tensor
     """Stress at the start of the step."""
     stress_deviator: Tensor

@@ -6,7 +6,8 @@ import math
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, negation, where
 from solver.materials.flow_stress import flow_stress, response
 from solver.materials.plasticity_state import PlasticityState, at_plastic_strain
 from solver.materials.return_algorithm import PlasticReturn, PlasticTrial, return_to_yield
@@ -41,15 +42,18 @@ def radial_return(
     tolerance = min(dt, LONGEST_TOLERANCE)
     multiplier = state.strain_rate * dt / math.sqrt(two_thirds)
     current = at_plastic_strain(state, state.plastic_strain, state.strain_rate)
+    seeks = trial.leaves
     for _ in range(MOST_ITERATIONS):
         at = response(flow_model, current)
         excess = trial_norm - math.sqrt(two_thirds) * at.flow_stress - 2.0 * trial.stiffness * multiplier
         hardening = at.rate_slope / dt + at.hardening_slope
-        change = excess / (two_thirds * hardening + 2.0 * trial.stiffness)
+        change = where(seeks, excess / (two_thirds * hardening + 2.0 * trial.stiffness), 0.0)
         multiplier += change
         strain = max(math.sqrt(two_thirds) * multiplier, 0.0)
         current = at_plastic_strain(state, state.plastic_strain + strain, strain / dt)
-        if abs(change) < tolerance or abs(excess) <= STRESS_TOLERANCE * at.flow_stress:
+        found = (abs(change) < tolerance) | (abs(excess) <= STRESS_TOLERANCE * at.flow_stress)
+        seeks = seeks & negation(found)
+        if not anywhere(seeks):
             break
     direction = trial.stress_deviator / trial_norm
     return PlasticReturn(
@@ -63,6 +67,7 @@ def radial_return(
 
 
 @implements(return_to_yield, RadialReturn)
+@lanewise
 def _(
     algorithm: RadialReturn, flow_model: object, state: PlasticityState, trial: PlasticTrial, dt: float
 ) -> PlasticReturn:

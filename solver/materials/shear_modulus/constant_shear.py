@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.shear_modulus import shear_modulus
 
@@ -16,5 +16,6 @@ class ConstantShear(NamedTuple):
 
 
 @implements(shear_modulus, ConstantShear)
+@lanewise
 def _(model: ConstantShear, state: PlasticityState) -> float:
     return state.shear_modulus

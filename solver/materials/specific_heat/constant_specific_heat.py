@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.specific_heat import specific_heat
 
@@ -16,5 +16,6 @@ class ConstantSpecificHeat(NamedTuple):
 
 
 @implements(specific_heat, ConstantSpecificHeat)
+@lanewise
 def _(model: ConstantSpecificHeat, state: PlasticityState) -> float:
     return state.specific_heat

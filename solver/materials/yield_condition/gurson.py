@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
 from solver.dispatch import implements, inline
+from solver.lanes import where
 from solver.materials.yield_condition import YieldValue, hardening_term, yield_normal, yield_value
 from solver.tensor import Tensor, deviator, double_dot, isotropic, trace
 
@@ -32,9 +33,8 @@ class Gurson(NamedTuple):
 @inline
 def effective_porosity(condition: Gurson, porosity: float) -> float:
     """f*, which grows faster once voids coalesce."""
-    if porosity > condition.f_c:
-        return condition.f_c + condition.k * (porosity - condition.f_c)
-    return porosity
+    coalesced = condition.f_c + condition.k * (porosity - condition.f_c)
+    return where(porosity > condition.f_c, coalesced, porosity)
 
 
 @inline

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.yield_condition import YieldValue, hardening_term, yield_normal, yield_value
 from solver.tensor import Tensor, deviator, double_dot
 
@@ -16,6 +16,7 @@ class VonMises(NamedTuple):
 
 
 @implements(yield_value, VonMises)
+@lanewise
 def _(
     condition: VonMises, equivalent_stress: float, stress_trace: float, flow_stress: float, porosity: float
 ) -> YieldValue:
@@ -23,11 +24,13 @@ def _(
 
 
 @implements(yield_normal, VonMises)
+@lanewise
 def _(condition: VonMises, stress: Tensor, flow_stress: float, porosity: float) -> Tensor:
     return 3.0 * deviator(stress)
 
 
 @implements(hardening_term, VonMises)
+@lanewise
 def _(
     condition: VonMises,
     stress: Tensor,

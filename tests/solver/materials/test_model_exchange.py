@@ -24,7 +24,7 @@ from test_thermal_properties import BPS, HMX, MTS, NP, PTW, SCG, SCG_MELT
 from test_yield_condition import GURSON, ROUSSELIER
 
 from solver.declare import FAMILIES
-from solver.kernels.stress import STRESS_SUMS, Kinematics, total, update_stresses
+from solver.kernels.stress import STRESS_SUMS, Kinematics, total, update_singly, update_stresses
 from solver.materials.comp_neo_hook import CompNeoHook, CompNeoHookPlastic
 from solver.materials.constitutive import DELETE, Material, Step, initialize, state_record
 from solver.materials.damage import for_constitutive_model, initialize_damage
@@ -195,7 +195,7 @@ class Specimen:
         """One step; returns the sums of the stress update."""
         self.particles.velocity_gradient[0] = velocity_gradient
         step = Step(dt, self.time, 1.0e-3, True, 0.2, 2.0, self.viscosity_heating)
-        update = update_stresses if compiled else update_stresses.py_func
+        update = update_stresses if compiled else update_singly.py_func
         self.time += dt
         sums = np.empty((1, STRESS_SUMS))
         update(
