@@ -188,8 +188,8 @@ class Simulation:
         buffers = max(1, min(self.exchange.buffers, len(self.bodies)))
         self._rows = [new_rows(count, CHANNELS) for _ in range(buffers)]
         self._touched = np.zeros((len(self.bodies), -(-count // 8) * 8), dtype=np.uint8)
-        self._active_nodes = np.zeros((len(self.bodies), count), dtype=np.uintp)
-        self._active = [listed[:0] for listed in self._active_nodes]
+        self._node_lists = [list(np.zeros((2, count), dtype=np.uintp)) for _ in self.bodies]
+        self._active = [listed[:0] for listed, _ in self._node_lists]
         self._fields = [self.nodal.of(m) for m in range(len(self.bodies))]
         self._gathered = new_rows(count, GATHERED)
         self._blocks: dict[int, tuple[int, int, list[NodeBlock]]] = {}
@@ -358,7 +358,7 @@ class Simulation:
         """Project all bodies; the sums of one are on their way to other ranks while the next is projected."""
         self.clock(Phase.GRID)
         for m, active in enumerate(self._active):
-            nodes.forget(active, self._touched[m], self._fields[m])
+            nodes.untouch(active, self._touched[m])
             if self.contact_laws and len(self.bodies) > 1:
                 nodes.forget_motion(active, self.nodal)
         on_their_way: deque[tuple[int, Callable[[], None]]] = deque()
@@ -393,8 +393,11 @@ class Simulation:
         finish()
         self.clock(Phase.GRID)
         nodal, (rows, touched) = self.nodal, self._sums_of(m)
-        count = nodes.list_touched(touched, touched.view(np.uint64), self._active_nodes[m])
-        self._active[m] = self._active_nodes[m, :count]
+        self._node_lists[m].reverse()  # the last step's is needed once more
+        listed = self._node_lists[m][0]
+        count = nodes.list_touched(touched, touched.view(np.uint64), listed)
+        nodes.forget(self._active[m], touched, self._fields[m])
+        self._active[m] = listed[:count]
         nodes.normalise(rows, self._active[m], self._fields[m])
         if self.flags.explicit_heat_conduction:
             self._projected_temperature[m] = nodal.temperature[m]
@@ -490,11 +493,10 @@ class Simulation:
         motion = nodes.Motion(
             self.gravity, self.flags.artificial_damping_coeff, self.flags.minimum_mass_for_acc
         )
-        nodes.accelerate(active, fields, motion, dt)
+        mass, *force = nodes.accelerate(active, fields, motion, dt, self._uncounted)
         if body.transmits_force:
             nodal.acceleration[m] = 0.0
             nodal.velocity_star[m] = nodal.velocity[m]
-        mass, *force = nodes.mass_and_load(active, fields, self._uncounted)
         self._add("TotalMass", body, mass)
         self._add("SumTransmittedForce", body, np.array(force))
 

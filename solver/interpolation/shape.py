@@ -14,6 +14,7 @@ from solver.dispatch import generic, generic_with_default, inline, lanewise
 from solver.grid import GridIndex, NodeBlock
 from solver.lanes import Lanes, every, lanes_at, put_lanes
 from solver.particles import Particles
+from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import Tensor, tensor_at
 
 MOST_NODES = 64
@@ -65,7 +66,10 @@ class Room(NamedTuple):
 def new_room() -> Room:
     """Room for any interpolator, to be made once for a loop over particles."""
     return Room(
-        np.empty(MOST_NODES, np.uint64), np.empty(MOST_NODES), np.empty((MOST_NODES, 3)), np.empty((24, 8))
+        scratch_numbers(MOST_NODES, np.uint64),
+        scratch_numbers(MOST_NODES, np.float64),
+        scratch_rows(MOST_NODES, 3),
+        scratch_rows(24, 8),
     )
 
 

@@ -15,6 +15,7 @@ from numba.core.types.containers import BaseNamedTuple, BaseTuple
 from numba.extending import intrinsic, overload
 
 import solver.jit.lanes  # tells numba of lanes
+import solver.jit.scratch  # tells numba of arrays on the stack
 import solver.jit.tensors  # noqa: F401 - tells numba of tensors
 from solver import dispatch
 from solver.jit.compile import INLINED

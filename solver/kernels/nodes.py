@@ -74,11 +74,19 @@ def list_touched(touched: Any, words: Any, active: Any) -> int:
 
 
 @kernel
+def untouch(active: Any, touched: Any) -> None:
+    """Count nodes that were active as not touched."""
+    for n in range(active.shape[0]):
+        touched[active[n]] = 0
+
+
+@kernel
 def forget(active: Any, touched: Any, fields: NodalFields) -> None:
-    """Give the nodes that were active the values of empty ones, and count them as not touched."""
+    """Give nodes that were active and are no longer touched the values of empty ones."""
     for n in range(active.shape[0]):
         i = active[n]
-        touched[i] = 0
+        if touched[i]:
+            continue
         fields.mass[i] = fields.volume[i] = EMPTY_MASS
         fields.temperature[i] = fields.temperature_rate[i] = fields.heat[i] = 0.0
         for c in range(3):
@@ -125,8 +133,14 @@ class Motion(NamedTuple):
 
 
 @kernel
-def accelerate(active: Any, fields: NodalFields, motion: Motion, dt: float) -> None:
-    """a_i = (f_int + f_ext) / m - damping v + g and v* = v + a dt."""
+def accelerate(
+    active: Any, fields: NodalFields, motion: Motion, dt: float, is_image: Any
+) -> tuple[float, float, float, float]:
+    """a_i = (f_int + f_ext) / m - damping v + g and v* = v + a dt.
+
+    Returns the sums of mass and of the three components of external force over nodes that are no periodic images.
+    """
+    mass = x = y = z = 0.0
     for n in range(active.shape[0]):
         i = active[n]
         m = fields.mass[i]
@@ -137,16 +151,8 @@ def accelerate(active: Any, fields: NodalFields, motion: Motion, dt: float) -> N
                 a = force / m - motion.damping * v
             fields.acceleration[i, c] = a + motion.gravity[c]
             fields.velocity_star[i, c] = v + fields.acceleration[i, c] * dt
-
-
-@kernel
-def mass_and_load(active: Any, fields: NodalFields, is_image: Any) -> tuple[float, float, float, float]:
-    """Sums of mass and of the three components of external force over nodes that are no periodic images."""
-    mass = x = y = z = 0.0
-    for n in range(active.shape[0]):
-        i = active[n]
         if not is_image[i]:
-            mass += fields.mass[i]
+            mass += m
             x += fields.external_force[i, 0]
             y += fields.external_force[i, 1]
             z += fields.external_force[i, 2]

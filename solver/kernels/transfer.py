@@ -22,10 +22,11 @@ from solver.interpolation.shape import (
     scatter,
     shape_functions,
 )
-from solver.jit import kernel_with_scratch
+from solver.jit import kernel
 from solver.kernels.chunks import CHUNK
 from solver.lanes import WIDTH, Lanes
 from solver.particles import Particles
+from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import Tensor, isotropic, put_tensor, tensor_at
 
 CHANNELS = 16
@@ -52,7 +53,7 @@ class Transfer(NamedTuple):
     specific_heat: float
 
 
-@kernel_with_scratch
+@kernel
 def particles_to_grid(
     interpolator: Any,
     grid: GridIndex,
@@ -118,15 +119,15 @@ def negative_pull(particles: Particles, p: int, transfer: Transfer) -> Tensor:
     return s
 
 
-@kernel_with_scratch
+@kernel
 def add_gradients(interpolator: Any, grid: GridIndex, particles: Particles, sums: Any) -> None:
     """Gradient-enhanced projection: particles give nodes v_p - L (x_p - x_i) and T_p - grad T . (x_p - x_i).
 
     Adds to ``sums`` what :func:`particles_to_grid` left out.
     """
-    nodes = np.empty(MOST_NODES, np.int64)
-    weights = np.empty(MOST_NODES)
-    gradients = np.empty((MOST_NODES, 3))
+    nodes = scratch_numbers(MOST_NODES, np.int64)
+    weights = scratch_numbers(MOST_NODES, np.float64)
+    gradients = scratch_rows(MOST_NODES, 3)
     layer = grid.nodes[0] * grid.nodes[1]
     for p in range(particles.mass.shape[0]):
         x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
@@ -145,7 +146,7 @@ def add_gradients(interpolator: Any, grid: GridIndex, particles: Particles, sums
             row[5] -= mass * (g[0] * rx + g[1] * ry + g[2] * rz)
 
 
-@kernel_with_scratch
+@kernel
 def smooth_velocity(
     interpolator: Any,
     grid: GridIndex,
@@ -191,7 +192,7 @@ def total(sums: Any) -> Motion:
     return Motion(kinetic, thermal, (px, py, pz), (cx, cy, cz))
 
 
-@kernel_with_scratch
+@kernel
 def grid_to_particles(
     interpolator: Any,
     grid: GridIndex,
@@ -263,13 +264,30 @@ def move(
     particles: Particles, p: int, nodal: Lanes, xpic: bool, filtered: Any, again: Lanes, dt: float
 ) -> None:
     """New velocity and position of a particle from the velocity and acceleration of the nodes."""
-    for c in range(3):
-        v, gained, step = particles.velocity[p, c], nodal[4 + c] * dt, nodal[c] * dt
-        particles.old_velocity[p, c] = v
-        particles.velocity[p, c] = v + gained
-        if xpic:
-            twice = 2.0 * filtered[p, c]
-            step -= 0.5 * (gained + (v - twice) + again[c]) * dt
-            particles.velocity[p, c] = twice - again[c] + gained
-        particles.position[p, c] += step
-        particles.displacement[p, c] += step
+    move_along(particles, p, 0, nodal[0], nodal[4], xpic, filtered, again[0], dt)
+    move_along(particles, p, 1, nodal[1], nodal[5], xpic, filtered, again[1], dt)
+    move_along(particles, p, 2, nodal[2], nodal[6], xpic, filtered, again[2], dt)
+
+
+@inline
+def move_along(
+    particles: Particles,
+    p: int,
+    axis: int,
+    velocity: float,
+    acceleration: float,
+    xpic: bool,
+    filtered: Any,
+    again: float,
+    dt: float,
+) -> None:
+    """:func:`move` in one direction."""
+    v, gained, step = particles.velocity[p, axis], acceleration * dt, velocity * dt
+    particles.old_velocity[p, axis] = v
+    particles.velocity[p, axis] = v + gained
+    if xpic:
+        twice = 2.0 * filtered[p, axis]
+        step -= 0.5 * (gained + (v - twice) + again) * dt
+        particles.velocity[p, axis] = twice - again + gained
+    particles.position[p, axis] += step
+    particles.displacement[p, axis] += step

@@ -233,7 +233,12 @@ def test_acceleration():
     for name in ("internal_force", "external_force", "velocity"):
         getattr(fields, name)[:] = random.normal(size=fields.velocity.shape)
     gravity = (0.0, -9.81, 1.0)
-    nodes.accelerate(np.arange(3, dtype=np.uintp), fields, nodes.Motion(gravity, 0.3, 0.5), DT)
+    is_image = np.zeros(fields.mass.size, dtype=np.bool_)
+    is_image[1] = True
+    motion = nodes.Motion(gravity, 0.3, 0.5)
+    mass, *load = nodes.accelerate(np.arange(3, dtype=np.uintp), fields, motion, DT, is_image)
+    np.testing.assert_allclose(mass, 2.001, rtol=1e-15)
+    np.testing.assert_allclose(load, fields.external_force[[0, 2]].sum(axis=0), rtol=1e-14)
     expected = np.tile(gravity, (3, 1))
     force = fields.internal_force[0] + fields.external_force[0]
     expected[0] += force / 2.0 - 0.3 * fields.velocity[0]
@@ -257,10 +262,15 @@ def test_nodes_left_behind_become_empty():
     for field in fields:
         field[:] = 7.0
     touched = np.ones(fields.mass.size, dtype=np.uint8)
-    nodes.forget(np.arange(fields.mass.size, dtype=np.uintp), touched, fields)
+    active = np.arange(fields.mass.size, dtype=np.uintp)
+    nodes.forget(active, touched, fields)
+    assert all((field == 7.0).all() for field in fields)
+    nodes.untouch(active[3:], touched)
+    np.testing.assert_array_equal(np.flatnonzero(touched), [0, 1, 2])
+    nodes.forget(active, touched, fields)
     for field, expected in zip(fields, empty, strict=True):
-        np.testing.assert_array_equal(field, expected)
-    assert not touched.any()
+        np.testing.assert_array_equal(field[3:], expected[3:])
+        assert (field[:3] == 7.0).all()
 
 
 def test_only_nodes_that_particles_touch_take_part():
