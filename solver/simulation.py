@@ -594,23 +594,18 @@ class Simulation:
         if self.flags.pressure_stabilization:
             self._average_dilatation(body, cells, dt)
 
-        def update(first: int, last: int, sums: Array) -> None:
-            stress.update_stresses(
-                body.numeric_model,
-                body.state,
-                body.failure,
-                body.particles,
-                body.material,
-                step,
-                self._kinematics,
-                cells,
-                self._cell_stretch,
-                first,
-                last,
-                sums,
-            )
-
-        stressed = stress.total(self._in_chunks(body, update))
+        loop = stress.StressLoop(
+            body.numeric_model,
+            body.state,
+            body.failure,
+            body.particles,
+            body.material,
+            step,
+            self._kinematics,
+            cells,
+            self._cell_stretch,
+        )
+        stressed = stress.total(self._in_chunks(body, partial(stress.update_stresses, loop)))
         if not stressed.finite and not self._fault:
             self._fault = (
                 f"material {body.index} ({body.name}) has a stress or position that is not a finite number "

@@ -100,20 +100,27 @@ def stretch_of_cell(cell_stretch: Any, cells: Any, p: int) -> float:
     return cell_stretch[cells[p]]
 
 
+class StressLoop(NamedTuple):
+    """What the stress update of the particles of a material needs."""
+
+    model: Any
+    state: Any
+    failure: Failure
+    particles: Particles
+    material: Material
+    step: Step
+    kinematics: Kinematics
+    cells: Any
+    """The cell of each particle, where pressure is stabilized."""
+    cell_stretch: Any
+    """The det F averaged over each cell, where pressure is stabilized."""
+
+
 @inline
-def update_stress(
-    model: Any,
-    state: Any,
-    failure: Failure,
-    particles: Particles,
-    p: Any,
-    material: Material,
-    step: Step,
-    kinematics: Kinematics,
-    cells: Any,
-    cell_stretch: Any,
-) -> Passed:
+def update_stress(loop: StressLoop, p: Any) -> Passed:
     """Deform particle ``p``, or eight of them, and ask their constitutive model for the stress."""
+    model, state, failure, particles = loop.model, loop.state, loop.failure, loop.particles
+    material, step, kinematics = loop.material, loop.step, loop.kinematics
     dt = step.dt
     F_old = tensor_at(particles.deformation_gradient, p)
     L = tensor_at(particles.velocity_gradient, p)
@@ -122,7 +129,7 @@ def update_stress(
     volume_old = particles.volume[p]
     volume = volume_old * J / J_old
     if kinematics.stabilize_pressure:
-        J_cell = stretch_of_cell(cell_stretch, cells, p)
+        J_cell = stretch_of_cell(loop.cell_stretch, loop.cells, p)
         F = F * (J_cell / J) ** (1.0 / 3.0)
         L = L + isotropic(math.log(J_cell / J) / (3.0 * dt))
         put_tensor(particles.velocity_gradient, p, L)
@@ -189,76 +196,45 @@ def count(passed: Passed, sums: Any, chunk: int) -> None:
 
 
 @kernel
-def update_singly(
-    model: Any,
-    state: Any,
-    failure: Failure,
-    particles: Particles,
-    material: Material,
-    step: Step,
-    kinematics: Kinematics,
-    cells: Any,
-    cell_stretch: Any,
-    first: int,
-    last: int,
-    sums: Any,
-) -> None:
+def update_singly(loop: StressLoop, first: int, last: int, sums: Any) -> None:
     """:func:`update_stresses`, one particle after the other."""
     for chunk in range(first, last):
         empty(sums, chunk)
-        for p in range(chunk * CHUNK, min((chunk + 1) * CHUNK, particles.mass.shape[0])):
-            passed = update_stress(
-                model, state, failure, particles, p, material, step, kinematics, cells, cell_stretch
-            )
-            count(passed, sums, chunk)
+        for p in range(chunk * CHUNK, min((chunk + 1) * CHUNK, loop.particles.mass.shape[0])):
+            count(update_stress(loop, p), sums, chunk)
 
 
 @kernel
-def update_by_eight(
-    model: Any,
-    state: Any,
-    failure: Failure,
-    particles: Particles,
-    material: Material,
-    step: Step,
-    kinematics: Kinematics,
-    cells: Any,
-    cell_stretch: Any,
-    first: int,
-    last: int,
-    sums: Any,
-) -> None:
-    """:func:`update_stresses` of eight particles at once, and one after the other where fewer are left."""
+def update_by_eight(loop: StressLoop, first: int, last: int, sums: Any) -> None:
+    """:func:`update_stresses` of eight particles at once, without those that are left of the last chunk."""
     for chunk in range(first, last):
         empty(sums, chunk)
-        end = min((chunk + 1) * CHUNK, particles.mass.shape[0])
-        rest = end - (end - chunk * CHUNK) % WIDTH
-        for start in range(chunk * CHUNK, rest, WIDTH):
-            passed = update_stress(
-                model,
-                state,
-                failure,
-                particles,
-                Eight(start),
-                material,
-                step,
-                kinematics,
-                cells,
-                cell_stretch,
-            )
-            count(passed, sums, chunk)
-        for p in range(rest, end):
-            passed_one = update_stress(
-                model, state, failure, particles, p, material, step, kinematics, cells, cell_stretch
-            )
-            count(passed_one, sums, chunk)
+        end = min((chunk + 1) * CHUNK, loop.particles.mass.shape[0])
+        for start in range(chunk * CHUNK, end - WIDTH + 1, WIDTH):
+            count(update_stress(loop, Eight(start)), sums, chunk)
 
 
-def update_stresses(model: Any, *rest: Any) -> None:
+@kernel
+def update_rest(loop: StressLoop, chunk: int, sums: Any) -> None:
+    """:func:`update_stresses` of the particles that :func:`update_by_eight` left in the last chunk.
+
+    A kernel of its own: many decks never need it, and it takes as long to compile as the other.
+    """
+    particles = loop.particles.mass.shape[0]
+    for p in range(particles - particles % WIDTH, particles):
+        count(update_stress(loop, p), sums, chunk)
+
+
+def update_stresses(loop: StressLoop, first: int, last: int, sums: Any) -> None:
     """Deformation gradients, volumes, stresses and temperatures at the end of the step.
 
-    ``cell_stretch`` holds det F averaged over each cell, used where pressure is stabilized. Does the chunks ``first``
-    to ``last`` of particles and stores in ``sums`` (chunks, STRESS_SUMS) each one's :class:`Stressed`.
+    Does the chunks ``first`` to ``last`` of particles and stores in ``sums`` (chunks, STRESS_SUMS) each one's
+    :class:`Stressed`.
     """
-    update = update_by_eight if takes_lanes(stress_update, model) else update_singly
-    update(model, *rest)
+    if not takes_lanes(stress_update, loop.model):
+        update_singly(loop, first, last, sums)
+        return
+    update_by_eight(loop, first, last, sums)
+    particles = len(loop.particles)
+    if particles % WIDTH and first <= particles // CHUNK < last:
+        update_rest(loop, last - 1, sums)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
 from solver.interpolation.stencil import direction
-from solver.kernels.stress import STRESS_SUMS, Kinematics, update_singly
+from solver.kernels.stress import STRESS_SUMS, Kinematics, StressLoop, update_singly
 from solver.kernels.transfer import CHANNELS, GATHERED
 from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
@@ -225,15 +225,17 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
     try:
         operations = operations_of(
             update_singly.py_func,  # type: ignore[attr-defined]  # numba keeps the function as it was written
-            body.model,
-            state,
-            failure,
-            of_sample(body.particles),
-            body.material,
-            simulation.constants_of_step(simulation.initial_time_step()),
-            Kinematics(simulation.flags.minimum_subcycles_for_F, False),
-            np.zeros(0, np.int64),
-            np.zeros(0),
+            StressLoop(
+                body.model,
+                state,
+                failure,
+                of_sample(body.particles),
+                body.material,
+                simulation.constants_of_step(simulation.initial_time_step()),
+                Kinematics(simulation.flags.minimum_subcycles_for_F, False),
+                np.zeros(0, np.int64),
+                np.zeros(0),
+            ),
             0,
             1,
             np.zeros((1, STRESS_SUMS)),

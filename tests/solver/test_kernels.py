@@ -464,20 +464,11 @@ def update(particles, subcycles=1, stabilized=False, cells=None, cell_stretch=No
     cell_stretch = np.zeros(0) if cell_stretch is None else cell_stretch
     kinematics = Kinematics(subcycles, stabilized)
     sums = np.empty((1, STRESS_SUMS))
-    stress.update_stresses(
-        MODEL,
-        NoState(),
-        new_failure(None, None, 0),
-        particles,
-        MATERIAL,
-        step_of(dt),
-        kinematics,
-        cells,
-        cell_stretch,
-        0,
-        1,
-        sums,
+    failure = new_failure(None, None, 0)
+    loop = stress.StressLoop(
+        MODEL, NoState(), failure, particles, MATERIAL, step_of(dt), kinematics, cells, cell_stretch
     )
+    stress.update_stresses(loop, 0, 1, sums)
     return stress.total(sums)
 
 

@@ -12,7 +12,7 @@ from test_thermal_properties import MTS, NP, SCG_MELT
 from test_yield_condition import GURSON
 
 from solver.dispatch import takes_lanes
-from solver.kernels.stress import STRESS_SUMS, Kinematics, total, update_by_eight, update_singly
+from solver.kernels.stress import STRESS_SUMS, Kinematics, StressLoop, total, update_singly, update_stresses
 from solver.materials.comp_neo_hook import CompNeoHook, CompNeoHookPlastic
 from solver.materials.constitutive import DELETE, Step, initialize, state_record, stress_update
 from solver.materials.damage import initialize_damage
@@ -111,7 +111,7 @@ class Specimen:
         """One step; returns the sums. Without viscosity where pressure is stabilized: J / J_cell is 1 to rounding."""
         self.particles.velocity_gradient[:] = self.rates * (1.0 if step_number < STEPS - 1 else -1.0)
         sums = np.empty((1, STRESS_SUMS))
-        update(
+        loop = StressLoop(
             self.model,
             self.state,
             self.failure,
@@ -121,10 +121,8 @@ class Specimen:
             Kinematics(1, stabilized),
             np.arange(COUNT) % 5,
             np.linspace(0.97, 1.03, 5),
-            0,
-            1,
-            sums,
         )
+        update(loop, 0, 1, sums)
         return total(sums)
 
     @property
@@ -141,7 +139,7 @@ def test_eight_at_once_as_one_after_the_other(case):
     eight, single = Specimen(model, damage, erosion), Specimen(model, damage, erosion)
     for step_number in range(STEPS):
         stabilized = case == "comp_neo_hook"
-        sums = eight.advance(update_by_eight, step_number, stabilized)
+        sums = eight.advance(update_stresses, step_number, stabilized)
         expected = single.advance(update_singly, step_number, stabilized)
         np.testing.assert_allclose(np.hstack(sums), np.hstack(expected), rtol=ROUNDING)
         others = single.arrays

@@ -24,7 +24,7 @@ from test_thermal_properties import BPS, HMX, MTS, NP, PTW, SCG, SCG_MELT
 from test_yield_condition import GURSON, ROUSSELIER
 
 from solver.declare import FAMILIES
-from solver.kernels.stress import STRESS_SUMS, Kinematics, total, update_singly, update_stresses
+from solver.kernels.stress import STRESS_SUMS, Kinematics, StressLoop, total, update_singly, update_stresses
 from solver.materials.comp_neo_hook import CompNeoHook, CompNeoHookPlastic
 from solver.materials.constitutive import DELETE, Material, Step, initialize, state_record
 from solver.materials.damage import for_constitutive_model, initialize_damage
@@ -198,7 +198,7 @@ class Specimen:
         update = update_stresses if compiled else update_singly.py_func
         self.time += dt
         sums = np.empty((1, STRESS_SUMS))
-        update(
+        loop = StressLoop(
             self.model,
             self.state,
             self.failure,
@@ -208,10 +208,8 @@ class Specimen:
             Kinematics(1, False),
             np.zeros(1, np.int64),
             np.ones(1),
-            0,
-            1,
-            sums,
         )
+        update(loop, 0, 1, sums)
         return total(sums)
 
 
