@@ -96,6 +96,15 @@ class Eight:
         self.first = first
 
 
+class UpToEight:
+    """Up to eight particles next to each other, to read from in kernels: beyond the last, the last is repeated."""
+
+    __slots__ = ("first", "last")
+
+    def __init__(self, first: int, last: int) -> None:
+        self.first, self.last = first, last
+
+
 def floor(a: Any) -> Any:
     """The largest whole number not above each."""
     return Lanes(*np.floor(a.numbers)) if isinstance(a, Lanes) else float(math.floor(a))
@@ -153,9 +162,12 @@ def lanes_at(rows: Any, row: Any, start: int) -> Lanes:
     return Lanes(*rows[row, start : start + WIDTH].tolist())
 
 
-def put_lanes(rows: Any, row: Any, start: int, lanes: Lanes) -> None:
-    """Store eight numbers in a C-contiguous array (n, m), from ``rows[row, start]`` on; nothing is checked."""
-    rows[row, start : start + WIDTH] = lanes.numbers
+def put_lanes(rows: Any, row: Any, start: int, lanes: Lanes | float) -> None:
+    """Store eight numbers, or one eight times, from ``rows[row, start]`` on in a C-contiguous array (n, m).
+
+    Nothing is checked.
+    """
+    rows[row, start : start + WIDTH] = _numbers(lanes)
 
 
 def new_rows(count: int, width: int) -> Any:

@@ -6,10 +6,11 @@ import math
 from typing import Any, NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.grid import GridIndex
 from solver.interpolation.corners import DomainCorner, cornered, domain_corner, number_of_corners
 from solver.interpolation.shape import particle_domain, reach
+from solver.lanes import where
 from solver.tensor import Tensor, determinant
 
 
@@ -44,7 +45,7 @@ class Diagonal(NamedTuple):
 def shortened(x: float, y: float, z: float, longest: float) -> Diagonal:
     """The vector, or one of length ``longest`` in its direction where it is longer."""
     length = math.sqrt(x * x + y * y + z * z)
-    s = longest / length if length > longest else 1.0
+    s = where(length > longest, longest / max(length, longest), 1.0)
     return Diagonal(s * x, s * y, s * z)
 
 
@@ -60,6 +61,7 @@ def half_diagonal(r: Tensor, s1: float, s2: float, longest: float) -> Diagonal:
 
 
 @implements(particle_domain, Cpdi)
+@lanewise
 def _(interpolator: Cpdi, deformation_gradient: Tensor, size: Tensor) -> Tensor:
     r = deformation_gradient @ size
     longest = interpolator.critical_length
@@ -79,6 +81,7 @@ def _(interpolator: Cpdi, deformation_gradient: Tensor, size: Tensor) -> Tensor:
 
 
 @implements(particle_domain, CpdiAxisymmetric)
+@lanewise
 def _(interpolator: CpdiAxisymmetric, deformation_gradient: Tensor, size: Tensor) -> Tensor:
     return deformation_gradient @ size
 
@@ -114,6 +117,7 @@ def sign(n: int, bit: int) -> float:
 
 
 @implements(domain_corner, Cpdi)
+@lanewise
 def _(interpolator: Cpdi, grid: GridIndex, x: float, z: float, domain: Tensor, n: int) -> DomainCorner:
     """G = (s1 r2 x r3 + s2 r3 x r1 + s3 r1 x r2) / 4V, divided by the spacing for 1/length."""
     r, s1, s2, s3 = domain, sign(n, 1), sign(n, 2), sign(n, 4)
@@ -139,6 +143,7 @@ def _(interpolator: Cpdi, grid: GridIndex, x: float, z: float, domain: Tensor, n
 
 
 @implements(domain_corner, CpdiAxisymmetric)
+@lanewise
 def _(
     interpolator: CpdiAxisymmetric, grid: GridIndex, x: float, z: float, domain: Tensor, n: int
 ) -> DomainCorner:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.grid import GridIndex
 from solver.interpolation.corners import DomainCorner, cornered, domain_corner, number_of_corners
 from solver.interpolation.cpdi import largest_extent, shortened
@@ -30,6 +30,7 @@ class Cpti(NamedTuple):
 
 
 @implements(particle_domain, Cpti)
+@lanewise
 def _(interpolator: Cpti, deformation_gradient: Tensor, size: Tensor) -> Tensor:
     r = deformation_gradient @ size
     longest = interpolator.critical_length
@@ -62,6 +63,7 @@ def _(interpolator: Cpti) -> int:
 
 
 @implements(domain_corner, Cpti)
+@lanewise
 def _(interpolator: Cpti, grid: GridIndex, x: float, z: float, domain: Tensor, n: int) -> DomainCorner:
     """G is that of the tetrahedron's barycentric coordinates: faces r2 x r3, r3 x r1, r1 x r2 over 6V = det r."""
     r, (hx, hy, hz) = domain, grid.spacing
@@ -74,7 +76,9 @@ def _(interpolator: Cpti, grid: GridIndex, x: float, z: float, domain: Tensor, n
     x3, y3 = s * (r.yx * r.zy - r.zx * r.yy) / hx, s * (r.zx * r.xy - r.xx * r.zy) / hy
     z3 = s * (r.xx * r.yy - r.yx * r.xy) / hz
     if n == 0:
-        return DomainCorner(x0, y0, z0, 0.25, -(x1 + x2 + x3), -(y1 + y2 + y3), -(z1 + z2 + z3))
+        return DomainCorner(
+            x0, y0, z0, 0.25, -1.0 * (x1 + x2 + x3), -1.0 * (y1 + y2 + y3), -1.0 * (z1 + z2 + z3)
+        )
     if n == 1:
         return DomainCorner(x0 + r.xx, y0 + r.yx, z0 + r.zx, 0.25, x1, y1, z1)
     if n == 2:

@@ -12,7 +12,7 @@ import numpy as np
 
 from solver.dispatch import generic, generic_with_default, inline, lanewise
 from solver.grid import GridIndex, NodeBlock
-from solver.lanes import Lanes, every, lanes_at, put_lanes
+from solver.lanes import WIDTH, Lanes, every, lanes_at, put_lanes
 from solver.particles import Particles
 from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import Tensor, tensor_at
@@ -59,7 +59,7 @@ class Room(NamedTuple):
     weights: Any
     gradients: Any
     factors: Any
-    """(24, 8), a column for each of eight particles, where shape functions are products of one-dimensional ones."""
+    """(80, 8), a column for each of eight particles: what :func:`prepare` stores."""
 
 
 @inline
@@ -69,7 +69,7 @@ def new_room() -> Room:
         scratch_numbers(MOST_NODES, np.uint64),
         scratch_numbers(MOST_NODES, np.float64),
         scratch_rows(MOST_NODES, 3),
-        scratch_rows(24, 8),
+        scratch_rows(80, WIDTH),
     )
 
 

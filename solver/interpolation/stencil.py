@@ -22,7 +22,7 @@ from solver.interpolation.shape import (
     scatter,
     shape_functions,
 )
-from solver.lanes import Lanes, above, every, floor, lanes_at, put_lanes
+from solver.lanes import Lanes, UpToEight, above, every, floor, lanes_at, put_lanes
 from solver.particles import Particles
 from solver.tensor import Tensor
 
@@ -74,26 +74,11 @@ def prepare_direction(
     interpolator: Any, grid: GridIndex, particles: Particles, first: int, axis: int, factors: Any
 ) -> None:
     """Store the weights of the particles ``first`` to ``first + 7`` in one direction."""
-    last, anchor, h = particles.mass.shape[0] - 1, grid.anchor[axis], grid.spacing[axis]
-    x, size = particles.position, particles.size
-    a, b, c, d = first, min(first + 1, last), min(first + 2, last), min(first + 3, last)
-    e, f, g, i = min(first + 4, last), min(first + 5, last), min(first + 6, last), min(first + 7, last)
-    positions = Lanes(
-        x[a, axis], x[b, axis], x[c, axis], x[d, axis], x[e, axis], x[f, axis], x[g, axis], x[i, axis]
-    )
-    widths = Lanes(
-        size[a, axis, axis],
-        size[b, axis, axis],
-        size[c, axis, axis],
-        size[d, axis, axis],
-        size[e, axis, axis],
-        size[f, axis, axis],
-        size[g, axis, axis],
-        size[i, axis, axis],
-    )
-    q = (positions - anchor) / h
+    p: Any = UpToEight(first, particles.mass.shape[0] - 1)
+    h = grid.spacing[axis]
+    q = (particles.position[p, axis] - grid.anchor[axis]) / h
     cell = floor(q)
-    s = direction(interpolator, q - cell, widths)
+    s = direction(interpolator, q - cell, particles.size[p, axis, axis])
     row, per_length = 8 * axis, 1.0 / h
     put_lanes(factors, row + W, 0, s.w0)
     put_lanes(factors, row + W + 1, 0, s.w1)

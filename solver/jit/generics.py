@@ -26,6 +26,7 @@ from solver.jit.types import (
     LanesType,
     MaskType,
     TensorType,
+    UpToEightType,
     lanes_type,
     mask_type,
     tensor_of_lanes,
@@ -46,7 +47,9 @@ def _is_wide(given: Any) -> bool:
     """Whether a value holds numbers of eight particles."""
     if isinstance(given, TensorType):
         return given.number is lanes_type
-    return isinstance(given, LanesType | MaskType | EightType) or any(map(_is_wide, _members(given)))
+    return isinstance(given, LanesType | MaskType | EightType | UpToEightType) or any(
+        map(_is_wide, _members(given))
+    )
 
 
 def _like(given: BaseTuple, members: list[Any]) -> Any:
@@ -64,8 +67,8 @@ def _of_one(given: Any) -> Any:
         return types.float64
     if isinstance(given, MaskType):
         return types.boolean
-    if isinstance(given, EightType):
-        return types.uintp
+    if isinstance(given, EightType | UpToEightType):
+        return types.intp
     if isinstance(given, TensorType):
         return tensor_type
     return _like(given, [_of_one(member) for member in _members(given)])
@@ -127,9 +130,12 @@ class _Numbers:
             return builder.load(self._element(laid, lane))
         if isinstance(given, MaskType):
             return builder.trunc(builder.load(self._element(laid, lane)), ir.IntType(1))
-        if isinstance(given, EightType):
-            first = cgutils.create_struct_proxy(given)(context, builder, value=laid).first
-            return builder.add(first, builder.zext(lane, first.type))
+        if isinstance(given, EightType | UpToEightType):
+            index = cgutils.create_struct_proxy(given)(context, builder, value=laid)
+            p = builder.add(index.first, builder.zext(lane, index.first.type))
+            if isinstance(given, EightType):
+                return p
+            return builder.select(builder.icmp_signed("<", p, index.last), p, index.last)
         if isinstance(given, TensorType) and _is_wide(given):
             proxy = cgutils.create_struct_proxy(tensor_type)(context, builder)
             for name, room in zip(Tensor.__slots__, laid, strict=True):

@@ -10,7 +10,7 @@ from typing import Any
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.types.containers import BaseTuple
-from numba.extending import intrinsic, lower_builtin, make_attribute_wrapper, overload, type_callable
+from numba.extending import intrinsic, lower_builtin, overload, type_callable
 
 from solver import elementary, lanes, tensor
 from solver.jit.compile import INLINED
@@ -21,11 +21,13 @@ from solver.jit.types import (
     LanesType,
     MaskType,
     TensorType,
+    UpToEightType,
     eight_type,
     lanes_type,
     mask_type,
+    up_to_eight_type,
 )
-from solver.lanes import WIDTH, Eight, Lanes
+from solver.lanes import WIDTH, Eight, Lanes, UpToEight
 
 I32, I64 = ir.IntType(32), ir.IntType(64)
 
@@ -329,7 +331,7 @@ def _largest_of(a: Any) -> Any:
 # ---- arrays --------------------------------------------------------------------------------------------------
 
 
-def _place(context: Any, builder: Any, rows_type: Any, rows: Any, row: Any, start: Any) -> Any:
+def _row_address(context: Any, builder: Any, rows_type: Any, rows: Any, row: Any, start: Any) -> Any:
     """Address of ``rows[row, start]`` of a C-contiguous array, as that of a vector."""
     array = context.make_array(rows_type)(context, builder, rows)
     width = builder.extract_value(array.shape, 1)
@@ -340,7 +342,7 @@ def _place(context: Any, builder: Any, rows_type: Any, rows: Any, row: Any, star
 @intrinsic
 def _load_lanes(context: Any, rows: Any, row: Any, start: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.load(_place(context, builder, signature.args[0], *args), align=8)
+        return builder.load(_row_address(context, builder, signature.args[0], *args), align=8)
 
     return lanes_type(rows, types.uintp, types.uintp), generate
 
@@ -348,7 +350,7 @@ def _load_lanes(context: Any, rows: Any, row: Any, start: Any) -> Any:
 @intrinsic
 def _store_lanes(context: Any, rows: Any, row: Any, start: Any, value: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        builder.store(args[3], _place(context, builder, signature.args[0], *args[:3]), align=8)
+        builder.store(args[3], _row_address(context, builder, signature.args[0], *args[:3]), align=8)
         return context.get_dummy_value()
 
     return types.void(rows, types.uintp, types.uintp, lanes_type), generate
@@ -369,6 +371,14 @@ def _type_eight(context: Any) -> Callable[..., Any]:
     return lambda first: eight_type if isinstance(first, types.Integer) else None
 
 
+@type_callable(UpToEight)
+def _type_up_to_eight(context: Any) -> Callable[..., Any]:
+    def typer(first: Any, last: Any) -> Any:
+        return up_to_eight_type if all(isinstance(t, types.Integer) for t in (first, last)) else None
+
+    return typer
+
+
 @lower_builtin(Eight, types.Integer)
 def _make_eight(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     proxy = cgutils.create_struct_proxy(eight_type)(context, builder)
@@ -376,26 +386,47 @@ def _make_eight(context: Any, builder: Any, sig: Any, args: Any) -> Any:
     return proxy._getvalue()
 
 
-make_attribute_wrapper(EightType, "first", "first")
+@lower_builtin(UpToEight, types.Integer, types.Integer)
+def _make_up_to_eight(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+    proxy = cgutils.create_struct_proxy(up_to_eight_type)(context, builder)
+    proxy.first, proxy.last = (
+        context.cast(builder, value, given, types.intp) for value, given in zip(args, sig.args, strict=True)
+    )
+    return proxy._getvalue()
 
 
-def _elements(context: Any, builder: Any, array_type: Any, array: Any, first: Any, offset: Any) -> list[Any]:
+def _particles(context: Any, builder: Any, index_type: Any, index: Any) -> list[Any]:
+    """The numbers of eight particles."""
+    places = cgutils.create_struct_proxy(index_type)(context, builder, value=index)
+    numbers = [builder.add(places.first, I64(k)) for k in range(WIDTH)]
+    if isinstance(index_type, EightType):
+        return numbers
+    inside = [builder.icmp_signed("<", number, places.last) for number in numbers]
+    return [builder.select(*choice, places.last) for choice in zip(inside, numbers, strict=True)]
+
+
+def _elements(context: Any, builder: Any, types_of: Any, array: Any, index: Any, offset: Any) -> list[Any]:
     """Addresses of the same element of eight particles in a C-contiguous array (n, ...)."""
+    array_type, index_type = types_of[:2]
     view = context.make_array(array_type)(context, builder, array)
     stride: Any = I64(1)
     for axis in range(1, array_type.ndim):
         stride = builder.mul(stride, builder.extract_value(view.shape, axis))
-    start = builder.add(builder.mul(first, stride), offset)
-    steps = [builder.mul(stride, I64(k)) for k in range(WIDTH)]
-    return [builder.gep(view.data, [builder.add(start, step)]) for step in steps]
+    particles = _particles(context, builder, index_type, index)
+    return [builder.gep(view.data, [builder.add(builder.mul(p, stride), offset)]) for p in particles]
+
+
+def _is_vector(array_type: Any, index_type: Any) -> bool:
+    """Whether the numbers of eight particles lie next to each other in memory."""
+    return array_type.ndim == 1 and array_type.dtype == types.float64 and isinstance(index_type, EightType)
 
 
 @intrinsic
-def _load_eight(context: Any, array: Any, first: Any, offset: Any) -> Any:
+def _load_eight(context: Any, array: Any, index: Any, offset: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         number = signature.args[0].dtype
-        places = _elements(context, builder, signature.args[0], *args)
-        if signature.args[0].ndim == 1 and number == types.float64:
+        places = _elements(context, builder, signature.args, *args)
+        if _is_vector(*signature.args[:2]):
             return builder.load(builder.bitcast(places[0], VECTOR.as_pointer()), align=8)
         vector = ir.Constant(VECTOR, ir.Undefined)
         for k, place in enumerate(places):
@@ -403,15 +434,15 @@ def _load_eight(context: Any, array: Any, first: Any, offset: Any) -> Any:
             vector = builder.insert_element(vector, value, I32(k))
         return vector
 
-    return lanes_type(array, types.uintp, types.uintp), generate
+    return lanes_type(array, index, types.uintp), generate
 
 
 @intrinsic
-def _store_eight(context: Any, array: Any, first: Any, offset: Any, value: Any) -> Any:
+def _store_eight(context: Any, array: Any, index: Any, offset: Any, value: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         number = signature.args[0].dtype
-        places = _elements(context, builder, signature.args[0], *args[:3])
-        if signature.args[0].ndim == 1 and number == types.float64:
+        places = _elements(context, builder, signature.args, *args[:3])
+        if _is_vector(*signature.args[:2]):
             builder.store(args[3], builder.bitcast(places[0], VECTOR.as_pointer()), align=8)
             return context.get_dummy_value()
         for k, place in enumerate(places):
@@ -419,36 +450,51 @@ def _store_eight(context: Any, array: Any, first: Any, offset: Any, value: Any) 
             builder.store(context.cast(builder, element, types.float64, number), place)
         return context.get_dummy_value()
 
-    return types.void(array, types.uintp, types.uintp, lanes_type), generate
+    return types.void(array, index, types.uintp, lanes_type), generate
 
 
-def _is_of_eight(index: Any) -> bool:
-    return isinstance(index, BaseTuple) and len(index) > 0 and isinstance(index[0], EightType)
+def _place_of_eight(array: Any, index: Any, kinds: Any) -> Any:
+    """A function that finds the particles and the offset among a particle's elements; None for other indices."""
+    if not isinstance(array, types.Array):
+        return None
+    if isinstance(index, kinds) and array.ndim == 1:
+        return lambda array, index: (index, 0)
+    if not (isinstance(index, BaseTuple) and len(index) == array.ndim and isinstance(index[0], kinds)):
+        return None
+    if array.ndim == 2:
+        return lambda array, index: (index[0], index[1])
+    return lambda array, index: (index[0], index[1] * array.shape[2] + index[2])
+
+
+def _place(array: Any, index: Any) -> Any:
+    """Found by :func:`_place_of_eight`."""
+    raise NotImplementedError
+
+
+@overload(_place, jit_options=INLINED, strict=False)
+def _placed(array: Any, index: Any) -> Any:
+    return _place_of_eight(array, index, (EightType, UpToEightType))
 
 
 @overload(operator.getitem, jit_options=INLINED, strict=False)
 def _get_eight(array: Any, index: Any) -> Any:
-    if not isinstance(array, types.Array):
+    if _place_of_eight(array, index, (EightType, UpToEightType)) is None:
         return None
-    if isinstance(index, EightType):
-        return lambda array, index: _load_eight(array, index.first, 0)
-    if _is_of_eight(index) and len(index) == array.ndim == 2:
-        return lambda array, index: _load_eight(array, index[0].first, index[1])
-    if _is_of_eight(index) and len(index) == array.ndim == 3:
-        return lambda array, index: _load_eight(array, index[0].first, index[1] * array.shape[2] + index[2])
-    return None
+
+    def load(array: Any, index: Any) -> Any:
+        particles, offset = _place(array, index)
+        return _load_eight(array, particles, offset)
+
+    return load
 
 
 @overload(operator.setitem, jit_options=INLINED, strict=False)
 def _set_eight(array: Any, index: Any, value: Any) -> Any:
-    if not isinstance(array, types.Array):
+    if _place_of_eight(array, index, EightType) is None:
         return None
-    if isinstance(index, EightType):
-        return lambda array, index, value: _store_eight(array, index.first, 0, value)
-    if _is_of_eight(index) and len(index) == array.ndim == 2:
-        return lambda array, index, value: _store_eight(array, index[0].first, index[1], value)
-    if _is_of_eight(index) and len(index) == array.ndim == 3:
-        return lambda array, index, value: _store_eight(
-            array, index[0].first, index[1] * array.shape[2] + index[2], value
-        )
-    return None
+
+    def store(array: Any, index: Any, value: Any) -> None:
+        particles, offset = _place(array, index)
+        _store_eight(array, particles, offset, value)
+
+    return store

@@ -55,6 +55,13 @@ class EightType(types.Type):
         super().__init__(name="Eight")
 
 
+class UpToEightType(types.Type):
+    """Numba's view of :class:`solver.lanes.UpToEight`."""
+
+    def __init__(self) -> None:
+        super().__init__(name="UpToEight")
+
+
 class TensorType(types.Type):
     """Numba's view of :class:`solver.tensor.Tensor`, of numbers or of lanes."""
 
@@ -74,6 +81,7 @@ class TensorType(types.Type):
 lanes_type = LanesType()
 mask_type = MaskType()
 eight_type = EightType()
+up_to_eight_type = UpToEightType()
 tensor_type = TensorType(types.float64)
 tensor_of_lanes = TensorType(lanes_type)
 
@@ -94,6 +102,12 @@ class _MaskModel(models.PrimitiveModel):
 class _EightModel(models.StructModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
         super().__init__(manager, fe_type, [("first", types.uintp)])
+
+
+@register_model(UpToEightType)
+class _UpToEightModel(models.StructModel):
+    def __init__(self, manager: Any, fe_type: Any) -> None:
+        super().__init__(manager, fe_type, [("first", types.intp), ("last", types.intp)])
 
 
 @register_model(TensorType)

@@ -12,6 +12,7 @@ from solver.lanes import (
     WIDTH,
     Eight,
     Lanes,
+    UpToEight,
     above,
     add_scaled,
     anywhere,
@@ -170,6 +171,23 @@ def test_eight_particles_index_arrays():
     v[inside, 1], t[inside, 2, 0] = 4.0, new[inside]
     np.testing.assert_array_equal(vectors, v)
     np.testing.assert_array_equal(tensors, t)
+
+
+@kernel
+def of_up_to_eight(numbers, vectors, first, results):
+    p = UpToEight(first, numbers.shape[0] - 1)
+    put_lanes(results, 0, 0, numbers[p])
+    put_lanes(results, 1, 0, vectors[p, 1])
+    put_lanes(results, 2, 0, 4.0)
+
+
+def test_beyond_the_last_particle_the_last_is_repeated():
+    rng = np.random.default_rng(6)
+    numbers, vectors, results = rng.normal(size=13), rng.normal(size=(13, 3)), new_rows(3, 8)
+    for first in (0, 5, 8, 12):
+        of_up_to_eight(numbers, vectors, first, results)
+        chosen = np.minimum(np.arange(first, first + 8), 12)
+        np.testing.assert_array_equal(results, [numbers[chosen], vectors[chosen, 1], np.full(8, 4.0)])
 
 
 def fused(rows, results):
