@@ -50,6 +50,9 @@ from solver.workspace import Workspace
 
 Array = NDArray[Any]
 
+NODES_FOR_A_PARTICLE = 4
+"""What a loop does for so many nodes takes as long as what one does for a particle."""
+
 STEPS_BETWEEN_CUTS = 20
 """After so many steps the nodes are divided anew among threads."""
 
@@ -358,7 +361,7 @@ class Simulation:
         """Project all bodies; the sums of one are on their way to other ranks while the next is projected."""
         self.clock(Phase.GRID)
         for m, active in enumerate(self._active):
-            nodes.untouch(active, self._touched[m])
+            self._over_nodes(active, nodes.untouch, self._touched[m])
             if self.contact_laws and len(self.bodies) > 1:
                 nodes.forget_motion(active, self.nodal)
         on_their_way: deque[tuple[int, Callable[[], None]]] = deque()
@@ -396,11 +399,10 @@ class Simulation:
         self._node_lists[m].reverse()  # the last step's is needed once more
         listed = self._node_lists[m][0]
         count = nodes.list_touched(touched, touched.view(np.uint64), listed)
-        nodes.forget(self._active[m], touched, self._fields[m])
+        self._over_nodes(self._active[m], nodes.forget, touched, self._fields[m])
         self._active[m] = listed[:count]
-        nodes.normalise(rows, self._active[m], self._fields[m])
-        if self.flags.explicit_heat_conduction:
-            self._projected_temperature[m] = nodal.temperature[m]
+        projected = self._projected_temperature[m]
+        self._over_nodes(self._active[m], nodes.normalise, rows, self._fields[m], projected)
         self.boundary_conditions.apply_temperature(nodal.temperature[m], m)
         self.boundary_conditions.apply_symmetry(nodal.velocity[m], m)
 
@@ -425,9 +427,13 @@ class Simulation:
             self._blocks[m] = self.step_number, count, blocks
         return blocks
 
-    def _in_chunks(self, body: Body, work: Callable[[int, int, Array], None]) -> Array:
-        """Call ``work(first, last, sums)`` for the chunks of a body's particles; the sums (chunks, ..) it stores."""
-        count = len(body.particles)
+    def _over_nodes(self, active: Array, work: Callable[..., None], *values: Any) -> None:
+        """Call ``work(nodes, *values)`` for the listed nodes, a part in each thread."""
+        members = self.team.size_for(len(active) // NODES_FOR_A_PARTICLE)
+        self.team.share(len(active), members, lambda first, last: work(active[first:last], *values))
+
+    def _in_chunks(self, count: int, work: Callable[[int, int, Array], None]) -> Array:
+        """Call ``work(first, last, sums)`` for chunks of particles or nodes; the sums (chunks, ..) that it stores."""
         chunks = number_of_chunks(count)
         sums = self._workspace.rows("sums of chunks", chunks, np.float64, MOTION_SUMS)
         self.team.share(chunks, self.team.size_for(count), lambda first, last: work(first, last, sums))
@@ -493,7 +499,8 @@ class Simulation:
         motion = nodes.Motion(
             self.gravity, self.flags.artificial_damping_coeff, self.flags.minimum_mass_for_acc
         )
-        mass, *force = nodes.accelerate(active, fields, motion, dt, self._uncounted)
+        accelerate = partial(nodes.accelerate, active, fields, motion, dt, self._uncounted)
+        mass, *force = self._in_chunks(len(active), accelerate)[:, :4].sum(axis=0)
         if body.transmits_force:
             nodal.acceleration[m] = 0.0
             nodal.velocity_star[m] = nodal.velocity[m]
@@ -515,15 +522,14 @@ class Simulation:
         for m in range(len(self.bodies)):
             self.boundary_conditions.apply_velocity(nodal.velocity_star[m], m)
             self.boundary_conditions.apply_symmetry(nodal.velocity_star[m], m)
-            nodes.rate_of_change(
-                self._active[m], nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m]
-            )
+            vectors = nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m]
+            self._over_nodes(self._active[m], nodes.rate_of_change, *vectors)
 
     def _conduct_heat(self, dt: float) -> None:
         """Temperature rates at the nodes: conduction, sources, contact and the conditions on faces."""
         nodal = self.nodal
-        nodal.temperature_rate[:] = 0.0
         if self.thermal_contact:
+            nodal.temperature_rate[:] = 0.0
             capacity = np.array([body.material.specific_heat for body in self.bodies])
             nodes.exchange_heat(nodal.mass, nodal.temperature, capacity, dt, nodal.temperature_rate)
         for m, body in enumerate(self.bodies):
@@ -531,15 +537,10 @@ class Simulation:
             if not body.takes_part(self.time):
                 star[:] = nodal.temperature_rate[m] = 0.0
                 continue
-            nodes.warm_up(self._active[m], self._fields[m], dt, star)
+            self._over_nodes(self._active[m], nodes.warm_up, self._fields[m], dt, star)
             self.boundary_conditions.apply_temperature(star, m)
-            nodes.rate_of_change(
-                self._active[m],
-                star.reshape(-1, 1),
-                self._projected_temperature[m].reshape(-1, 1),
-                dt,
-                nodal.temperature_rate[m].reshape(-1, 1),
-            )
+            numbers = star, self._projected_temperature[m], dt, nodal.temperature_rate[m]
+            self._over_nodes(self._active[m], nodes.rate_of_numbers, *numbers)
 
     # ---- grid to particles ---------------------------------------------------------------------------------
 
@@ -548,7 +549,8 @@ class Simulation:
         self.clock(Phase.TO_PARTICLES)
         filtered = self._filter(m, body) if self.flags.XPIC2 and not body.rigid else None
         self.clock(Phase.GRID)
-        nodes.interleave(self._active[m], self._fields[m], self._temperature_star[m], self._gathered)
+        star = self._temperature_star[m]
+        self._over_nodes(self._active[m], nodes.interleave, self._fields[m], star, self._gathered)
         options, index = self._transfer(body), self.grid.index
 
         def move(first: int, last: int, sums: Array) -> None:
@@ -568,7 +570,7 @@ class Simulation:
             )
 
         self.clock(Phase.TO_PARTICLES)
-        motion = transfer.total(self._in_chunks(body, move))
+        motion = transfer.total(self._in_chunks(len(particles), move))
         if filtered is not None:
             nodes.clear(self._active[m], self._sums_of(m).rows)
         self._add("KineticEnergy", body, motion.kinetic_energy)
@@ -605,7 +607,7 @@ class Simulation:
             cells,
             self._cell_stretch,
         )
-        stressed = stress.total(self._in_chunks(body, partial(stress.update_stresses, loop)))
+        stressed = stress.total(self._in_chunks(len(body.particles), partial(stress.update_stresses, loop)))
         if not stressed.finite and not self._fault:
             self._fault = (
                 f"material {body.index} ({body.name}) has a stress or position that is not a finite number "
@@ -652,8 +654,10 @@ class Simulation:
         np.divide(volume, reference, out=self._cell_stretch, where=reference > 0.0)
 
     def _settle(self, body: Body) -> None:
-        kept = self._workspace.rows("kept", len(body.particles), np.bool_)
-        lost = settle.settle(
+        count = len(body.particles)
+        kept = self._workspace.rows("kept", count, np.bool_)
+        work = partial(
+            settle.settle,
             body.particles,
             self.grid.index,
             self.grid.cells,
@@ -662,7 +666,7 @@ class Simulation:
             self.flags.minimum_particle_mass,
             kept,
         )
-        if lost:
+        if self._in_chunks(count, work)[:, 0].any():
             body.keep(kept)
 
     # ---- sums ----------------------------------------------------------------------------------------------

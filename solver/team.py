@@ -50,6 +50,9 @@ class Team:
 
     def share(self, count: int, members: int, task: Callable[[int, int], Any]) -> None:
         """Call ``task(first, last)`` for even parts of ``range(count)``, one for each of ``members`` threads."""
+        if members == 1:
+            task(0, count)
+            return
         ends = [count * m // members for m in range(members + 1)]
         self.run([_part(task, first, last) for first, last in itertools.pairwise(ends)])
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from solver.boundary_conditions import GRADIENT, MIRROR, SET, ZERO_NORMAL, Operations
 from solver.jit import kernel
+from solver.kernels.chunks import CHUNK
 from solver.kernels.transfer import CHANNELS
 from solver.nodal import EMPTY_MASS, NodalFields
 
@@ -105,8 +106,11 @@ def forget_motion(active: Any, nodal: NodalFields) -> None:
 
 
 @kernel
-def normalise(rows: Any, active: Any, fields: NodalFields) -> None:
-    """Split sums into nodal fields, v_i = momentum / mass and T_i = (mass T) / mass, and leave zeros behind."""
+def normalise(active: Any, rows: Any, fields: NodalFields, projected_temperature: Any) -> None:
+    """Split sums into nodal fields, v_i = momentum / mass and T_i = (mass T) / mass, and leave zeros behind.
+
+    ``projected_temperature`` (N,) keeps T_i from before conditions act on it.
+    """
     for n in range(active.shape[0]):
         i = active[n]
         row = rows[i]
@@ -117,7 +121,8 @@ def normalise(rows: Any, active: Any, fields: NodalFields) -> None:
             fields.velocity[i, c] = row[1 + c] / m
             fields.internal_force[i, c] = row[8 + c]
             fields.external_force[i, c] = row[12 + c]
-        fields.temperature[i] = row[5] / m
+        fields.temperature[i] = projected_temperature[i] = row[5] / m
+        fields.temperature_rate[i] = 0.0
         fields.heat[i] = row[6] + row[11]
         for c in range(CHANNELS):
             row[c] = 0.0
@@ -134,29 +139,39 @@ class Motion(NamedTuple):
 
 @kernel
 def accelerate(
-    active: Any, fields: NodalFields, motion: Motion, dt: float, is_image: Any
-) -> tuple[float, float, float, float]:
+    active: Any,
+    fields: NodalFields,
+    motion: Motion,
+    dt: float,
+    is_image: Any,
+    first: int,
+    last: int,
+    sums: Any,
+) -> None:
     """a_i = (f_int + f_ext) / m - damping v + g and v* = v + a dt.
 
-    Returns the sums of mass and of the three components of external force over nodes that are no periodic images.
+    Does the chunks ``first`` to ``last`` of active nodes and stores in the rows of ``sums`` each one's sums of mass
+    and of the three components of external force over nodes that are no periodic images.
     """
-    mass = x = y = z = 0.0
-    for n in range(active.shape[0]):
-        i = active[n]
-        m = fields.mass[i]
-        for c in range(3):
-            a, v = 0.0, fields.velocity[i, c]
-            if m > motion.least_mass:
-                force = fields.internal_force[i, c] + fields.external_force[i, c]
-                a = force / m - motion.damping * v
-            fields.acceleration[i, c] = a + motion.gravity[c]
-            fields.velocity_star[i, c] = v + fields.acceleration[i, c] * dt
-        if not is_image[i]:
-            mass += m
-            x += fields.external_force[i, 0]
-            y += fields.external_force[i, 1]
-            z += fields.external_force[i, 2]
-    return mass, x, y, z
+    for chunk in range(first, last):
+        mass = x = y = z = 0.0
+        for n in range(chunk * CHUNK, min((chunk + 1) * CHUNK, active.shape[0])):
+            i = active[n]
+            m = fields.mass[i]
+            for c in range(3):
+                a, v = 0.0, fields.velocity[i, c]
+                if m > motion.least_mass:
+                    force = fields.internal_force[i, c] + fields.external_force[i, c]
+                    a = force / m - motion.damping * v
+                fields.acceleration[i, c] = a + motion.gravity[c]
+                fields.velocity_star[i, c] = v + fields.acceleration[i, c] * dt
+            if not is_image[i]:
+                mass += m
+                x += fields.external_force[i, 0]
+                y += fields.external_force[i, 1]
+                z += fields.external_force[i, 2]
+        row = sums[chunk]
+        row[0], row[1], row[2], row[3] = mass, x, y, z
 
 
 @kernel
@@ -166,6 +181,14 @@ def rate_of_change(active: Any, new: Any, old: Any, dt: float, rate: Any) -> Non
         i = active[n]
         for c in range(new.shape[1]):
             rate[i, c] = (new[i, c] - old[i, c]) / dt
+
+
+@kernel
+def rate_of_numbers(active: Any, new: Any, old: Any, dt: float, rate: Any) -> None:
+    """(new - old) / dt of values (N,) of the active nodes."""
+    for n in range(active.shape[0]):
+        i = active[n]
+        rate[i] = (new[i] - old[i]) / dt
 
 
 @kernel

@@ -7,6 +7,7 @@ from typing import Any
 
 from solver.grid import GridIndex
 from solver.jit import kernel
+from solver.kernels.chunks import CHUNK
 from solver.materials.constitutive import DELETE
 from solver.particles import Particles
 
@@ -20,40 +21,45 @@ def settle(
     owned: Any,
     least_mass: float,
     kept: Any,
-) -> int:
-    """Wrap periodic positions and mark in ``kept`` the particles that stay; return how many do not.
+    first: int,
+    last: int,
+    sums: Any,
+) -> None:
+    """Wrap periodic positions and mark in ``kept`` the particles that stay.
 
-    A particle goes when it left every patch (``owned`` marks their cells, x fastest), failed for good, became
-    too light or colder than absolute zero.
+    A particle goes when it left every patch (``owned`` marks their cells, x fastest), failed for good, became too
+    light or colder than absolute zero. Does the chunks ``first`` to ``last`` of particles, and stores how many of
+    each do not stay at the beginning of its row of ``sums``.
     """
-    lost = 0
-    for p in range(particles.mass.shape[0]):
-        cell, stride, inside = 0, 1, True
-        for c in range(3):
-            q = (particles.position[p, c] - grid.anchor[c]) / grid.spacing[c]
-            if periodic[c] and (q < 0.0 or q >= cells[c]):
-                wraps = math.floor(q / cells[c])
-                particles.position[p, c] -= wraps * cells[c] * grid.spacing[c]
+    for chunk in range(first, last):
+        lost = 0
+        for p in range(chunk * CHUNK, min((chunk + 1) * CHUNK, particles.mass.shape[0])):
+            cell, stride, inside = 0, 1, True
+            for c in range(3):
                 q = (particles.position[p, c] - grid.anchor[c]) / grid.spacing[c]
-                if not 0.0 <= q < cells[c]:  # a rounding error beyond a face
-                    particles.position[p, c] = grid.anchor[c]
-                    q = 0.0
-            i = math.floor(q)
-            if i < 0 or i >= cells[c]:
-                inside = False
-            cell += i * stride
-            stride *= cells[c]
-        good = (
-            inside
-            and owned[cell]
-            and particles.localized[p] != DELETE
-            and particles.mass[p] > least_mass
-            and particles.temperature[p] >= 0.0
-        )
-        kept[p] = good
-        if not good:
-            lost += 1
-    return lost
+                if periodic[c] and (q < 0.0 or q >= cells[c]):
+                    wraps = math.floor(q / cells[c])
+                    particles.position[p, c] -= wraps * cells[c] * grid.spacing[c]
+                    q = (particles.position[p, c] - grid.anchor[c]) / grid.spacing[c]
+                    if not 0.0 <= q < cells[c]:  # a rounding error beyond a face
+                        particles.position[p, c] = grid.anchor[c]
+                        q = 0.0
+                i = math.floor(q)
+                if i < 0 or i >= cells[c]:
+                    inside = False
+                cell += i * stride
+                stride *= cells[c]
+            good = (
+                inside
+                and owned[cell]
+                and particles.localized[p] != DELETE
+                and particles.mass[p] > least_mass
+                and particles.temperature[p] >= 0.0
+            )
+            kept[p] = good
+            if not good:
+                lost += 1
+        sums[chunk, 0] = lost
 
 
 @kernel

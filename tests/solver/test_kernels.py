@@ -236,7 +236,9 @@ def test_acceleration():
     is_image = np.zeros(fields.mass.size, dtype=np.bool_)
     is_image[1] = True
     motion = nodes.Motion(gravity, 0.3, 0.5)
-    mass, *load = nodes.accelerate(np.arange(3, dtype=np.uintp), fields, motion, DT, is_image)
+    sums = np.empty((1, 4))
+    nodes.accelerate(np.arange(3, dtype=np.uintp), fields, motion, DT, is_image, 0, 1, sums)
+    mass, *load = sums[0]
     np.testing.assert_allclose(mass, 2.001, rtol=1e-15)
     np.testing.assert_allclose(load, fields.external_force[[0, 2]].sum(axis=0), rtol=1e-14)
     expected = np.tile(gravity, (3, 1))
@@ -558,7 +560,9 @@ def settled(positions, grid=BOX, owned=EVERYWHERE, least_mass=0.0, **values):
     for name, value in values.items():
         getattr(particles, name)[:] = value
     kept = np.empty(len(particles), dtype=np.bool_)
-    lost = settle.settle(particles, grid.index, grid.cells, grid.periodic, owned, least_mass, kept)
+    sums = np.empty((1, 1))
+    settle.settle(particles, grid.index, grid.cells, grid.periodic, owned, least_mass, kept, 0, 1, sums)
+    lost = sums[0, 0]
     assert lost == np.count_nonzero(~kept)
     return kept, particles
 
