@@ -7,9 +7,10 @@ the material point method by Daphalapurkar, Lu, Coker and Komanduri (Int. J. Fra
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,10 @@ from solver.geometry.read_table import read_table
 from solver.grid import Grid
 from solver.nodal import NodalFields
 from solver.particles import StateVariable, keep, new_arrays
+from solver.workspace import Workspace
+
+if TYPE_CHECKING:
+    from solver.simulation import Simulation
 
 Array = NDArray[Any]
 
@@ -91,7 +96,7 @@ class ZoneState(NamedTuple):
 
 
 def read_zones(file: Path, grid: Grid, materials: int, ids: ParticleIds) -> ZoneState:
-    """The zones of a file that lie in the grid.
+    """The zones of a file that lie in the grid, or in the cells of this rank.
 
     Parameters
     ----------
@@ -112,7 +117,7 @@ def read_zones(file: Path, grid: Grid, materials: int, ids: ParticleIds) -> Zone
             f"{file}: row {row + 1} names the materials {indices[row, 0]:g} and {indices[row, 1]:g}; "
             f"the deck has {materials}, the first is 0"
         )
-    table = table[_in_domain(grid, table[:, :3])]
+    table = table[_in_domain(grid, table[:, :3]) & _in_own_cells(grid, table[:, :3])]
     zones = new_arrays(ZoneState, len(table))
     zones.position[:], zones.area[:] = table[:, :3], table[:, 3]
     zones.normal[:], zones.tangent[:] = table[:, 4:7], table[:, 7:10]
@@ -126,6 +131,13 @@ def _in_domain(grid: Grid, positions: Array) -> Array:
     cells = grid.cell_of(positions)
     inside = [((cells >= patch.low) & (cells < patch.high)).all(axis=1) for patch in grid.patches]
     return np.asarray(np.any(inside, axis=0))
+
+
+def _in_own_cells(grid: Grid, positions: Array) -> Array:
+    """Whether positions (n, 3) lie in cells of this rank, (n,)."""
+    low, high = grid.own_cells
+    cells = grid.cell_of(positions)
+    return np.asarray(((cells >= low) & (cells < high)).all(axis=1))
 
 
 def tractions(law: CohesiveZone, opening: Array, first: Array, second: Array) -> tuple[Array, Array, Array]:
@@ -158,8 +170,8 @@ def dot(a: Array, b: Array) -> Array:
 class CohesiveZones:
     """The zones of one file in a simulation.
 
-    :meth:`act` is for the hook ``after_contact`` of a simulation, :meth:`settle` for ``after_step``. Where one
-    of the two materials is not near, a zone neither moves with it nor pulls at the other.
+    Where one of the two materials is not near, a zone neither moves with it nor pulls at the other. Of several
+    ranks each has those in its cells, whose nodes it stores; they migrate as particles do.
 
     With ``do_rotation`` a zone turns like a rigid body with its two materials, separation included, so that
     bodies that are tied may turn as a whole. Uintah takes an angle from the square of the
@@ -169,22 +181,29 @@ class CohesiveZones:
     ----------
     law : the traction law.
     zones : the zones at the start of a step.
-    grid : the grid whose nodes they push.
     """
 
     law: CohesiveZone
     zones: ZoneState
-    grid: Grid
     _moved: ZoneState | None = field(default=None, repr=False)
 
-    def act(self, nodal: NodalFields, dt: float) -> None:
-        """Let the zones follow the two materials, and add their forces to the external ones at the nodes.
+    @property
+    def records(self) -> tuple[Any, ...]:
+        """All arrays of the zones, as a body has them of its particles."""
+        return (self.zones,)
+
+    @records.setter
+    def records(self, records: tuple[Any, ...]) -> None:
+        (self.zones,) = records
+
+    def act(self, grid: Grid, nodal: NodalFields, dt: float, force: Array) -> None:
+        """Let the zones follow the two materials, and add what they pull with to ``force`` (materials, nodes, 3).
 
         ``nodal`` holds velocities and masses after contact has acted on them for the first time. The force on
         a material goes to the nodes about the zone (at its old place) by weight and nodal mass.
         """
-        nodes, weights = self._nodes_about()
-        self._moved = self._follow(nodal, nodes, weights, dt)
+        nodes, weights = self._nodes_about(grid)
+        self._moved = self._follow(grid, nodal, nodes, weights, dt)
         bottom, top = (
             weights * nodal.mass[material[:, None], nodes] for material in (self.zones.bottom, self.zones.top)
         )
@@ -192,41 +211,31 @@ class CohesiveZones:
         for material, share, sign in ((self.zones.bottom, bottom, 1.0), (self.zones.top, top, -1.0)):
             share /= share.sum(axis=1, keepdims=True)
             pull = sign * (self._moved.force * near[:, None])[:, None, :] * share[:, :, None]
-            np.add.at(nodal.external_force, (material[:, None], nodes), pull)
+            np.add.at(force, (material[:, None], nodes), pull)
 
-    def settle(self) -> None:
+    def settle(self, grid: Grid) -> None:
         """Take over the places of the last :meth:`act`; zones that left the domain are gone."""
         if self._moved is not None:
-            self._wrap(self._moved.position)
-            self.zones = keep(self._moved, _in_domain(self.grid, self._moved.position))
+            _wrap(grid, self._moved.position)
+            self.zones = keep(self._moved, _in_domain(grid, self._moved.position))
             self._moved = None
 
-    def _wrap(self, positions: Array) -> None:
-        """Bring positions (n, 3) back into the domain in the directions in which it repeats."""
-        for axis in np.flatnonzero(self.grid.periodic):
-            low, high = self.grid.anchor[axis], self.grid.upper[axis]
-            positions[:, axis] = low + (positions[:, axis] - low) % (high - low)
-            cell = self.grid.cell_of(positions)[:, axis]
-            positions[(cell < 0) | (cell >= self.grid.cells[axis]), axis] = (
-                low  # a rounding error beyond a face
-            )
-
-    def _nodes_about(self) -> tuple[Array, Array]:
+    def _nodes_about(self, grid: Grid) -> tuple[Array, Array]:
         """The eight nodes of each zone's cell, (n, 8), and their trilinear weights.
 
-        Where the domain repeats, the nodes are those that own the values.
+        Where the domain repeats and one rank has all of it, the nodes are those that own the values.
         """
-        relative = (self.zones.position - np.array(self.grid.anchor)) / np.array(self.grid.spacing)
+        relative = (self.zones.position - np.array(grid.anchor)) / np.array(grid.spacing)
         cell = np.floor(relative).astype(np.int64)
         part = (relative - cell)[:, None, :]
         weights = np.where(OFFSETS, part, 1.0 - part).prod(axis=2)
         index = cell[:, None, :] + OFFSETS
-        repeats = np.array(self.grid.periodic, dtype=bool)
-        index = np.where(repeats, index % np.array(self.grid.cells), index)
+        if grid.window is None:
+            index = np.where(np.array(grid.periodic, bool), index % np.array(grid.cells), index)
         i, j, k = np.moveaxis(index, 2, 0)
-        return self.grid.flat(i, j, k), weights
+        return grid.flat(i, j, k), weights
 
-    def _follow(self, nodal: NodalFields, nodes: Array, weights: Array, dt: float) -> ZoneState:
+    def _follow(self, grid: Grid, nodal: NodalFields, nodes: Array, weights: Array, dt: float) -> ZoneState:
         """The zones at the end of the step, with their forces."""
         old = self.zones
         top, bottom = (_velocity(nodal, m, nodes, weights) for m in (old.top, old.bottom))
@@ -235,7 +244,7 @@ class CohesiveZones:
         separation = top_displacement - bottom_displacement
         normal, tangent = old.normal, old.tangent
         if self.law.do_rotation:
-            angle = self._spin(nodal, nodes) * dt
+            angle = self._spin(grid, nodal, nodes) * dt
             normal, tangent = _turned(normal, angle), _turned(tangent, angle)
             separation = _turned(old.separation, angle) + (top - bottom) * dt
         second_tangent = np.cross(tangent, normal)
@@ -258,14 +267,14 @@ class CohesiveZones:
             failed=failed,
         )
 
-    def _spin(self, nodal: NodalFields, nodes: Array) -> Array:
+    def _spin(self, grid: Grid, nodal: NodalFields, nodes: Array) -> Array:
         """Angular velocities (n, 3) with which the two materials turn about their centres at the zones.
 
         omega = I^-1 L with the moments of inertia I and of momentum L of the masses at the nodes, both summed
         over the two materials: the rigid motion that comes closest to theirs. Only distances along the zone
         count, since velocities across a body's edge are not known well at nodes.
         """
-        places = OFFSETS * np.array(self.grid.spacing)
+        places = OFFSETS * np.array(grid.spacing)
         momentum, inertia = np.zeros((len(nodes), 3)), np.zeros((len(nodes), 3, 3))
         for material in (self.zones.top, self.zones.bottom):
             mass = nodal.mass[material[:, None], nodes][:, :, None]
@@ -276,6 +285,37 @@ class CohesiveZones:
             spread = np.einsum("nka,nkb->nab", mass * arm, arm)
             inertia += np.trace(spread, axis1=1, axis2=2)[:, None, None] * np.eye(3) - spread
         return np.einsum("nab,nb->na", np.linalg.pinv(inertia, hermitian=True), momentum)
+
+
+def attach(simulation: Simulation, zones: Sequence[CohesiveZones]) -> None:
+    """Let the zones of all files act between contact and the accelerations of a simulation, and move with it."""
+    simulation.cohesive_zones += zones
+    room = Workspace()
+
+    def act(sim: Simulation, dt: float) -> None:
+        pulled = sim.nodal.external_force
+        forces = room.rows("forces", pulled.size, np.float64).reshape(pulled.shape)
+        forces[:] = 0.0
+        for tied in sim.cohesive_zones:
+            tied.act(sim.grid, sim.nodal, dt, forces)
+        sim.exchange.add(*forces)()
+        pulled += forces
+
+    def settle(sim: Simulation, dt: float) -> None:
+        for tied in sim.cohesive_zones:
+            tied.settle(sim.grid)
+
+    simulation.after_contact.append(act)
+    simulation.after_step.append(settle)
+
+
+def _wrap(grid: Grid, positions: Array) -> None:
+    """Bring positions (n, 3) back into the domain in the directions in which it repeats, in place."""
+    for axis in np.flatnonzero(grid.periodic):
+        low, high = grid.anchor[axis], grid.upper[axis]
+        positions[:, axis] = low + (positions[:, axis] - low) % (high - low)
+        cell = grid.cell_of(positions)[:, axis]
+        positions[(cell < 0) | (cell >= grid.cells[axis]), axis] = low  # a rounding error beyond a face
 
 
 def _velocity(nodal: NodalFields, material: Array, nodes: Array, weights: Array) -> Array:

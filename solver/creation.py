@@ -279,6 +279,8 @@ def _numbers(objects: Sequence[GeometryObject], grid: Grid, *options: bool) -> t
     """
     whole = replace(grid, window=None)
     batches = _batches(objects, whole, *options)
+    if not batches:
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
     patch = np.concatenate([b.patch for b in batches])
     order = _patch_by_patch(patch, grid)
     patch = patch[order]

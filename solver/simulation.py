@@ -22,7 +22,7 @@ from solver.contact.law import ContactLaw, ContactScene
 from solver.diffusion.solute import NoSolute
 from solver.domains.communicator import largest_number
 from solver.domains.exchange import Exchange, OneRank, Status
-from solver.domains.reach import reach
+from solver.domains.reach import layers_reached
 from solver.flags import Flags
 from solver.grid import FACES, Grid, NodeBlock
 from solver.interpolation.shape import Sums
@@ -290,32 +290,24 @@ class Simulation:
         for body in self.bodies:
             self._settle(body)
         self.clock(Phase.EXCHANGE)
-        self.exchange.migrate(self.bodies)
+        self.exchange.migrate(self.materials)
         stable = self._conclude(stable)
         self.time += dt
         self.step_number += 1
         self.clock(Phase.OUTSIDE)
         return self._bounded(stable)
 
-    def records(self, index: int) -> tuple[Any, ...]:
-        """All arrays of a material; those of cohesive zones, one record each, come after those of bodies."""
-        if index < len(self.bodies):
-            return self.bodies[index].records
-        return (self.cohesive_zones[index - len(self.bodies)].zones,)
-
-    def replace_records(self, index: int, records: tuple[Any, ...]) -> None:
-        """Give a material other arrays, as of a checkpoint."""
-        if index < len(self.bodies):
-            self.bodies[index].records = records
-        else:
-            (self.cohesive_zones[index - len(self.bodies)].zones,) = records
+    @property
+    def materials(self) -> Sequence[Body | CohesiveZones]:
+        """All that has ``records`` of arrays with a row for each place: the bodies, and after them the zones."""
+        return [*self.bodies, *self.cohesive_zones]
 
     def _reach(self) -> int:
         """Layers of cells around this rank's own that its particles reach."""
         if self.exchange.communicator.size == 1:
             return 0
         on_corners = self.spread_corner_loads is not None
-        return reach(self.interpolator, [body.particles for body in self.bodies], on_corners)
+        return layers_reached(self.interpolator, self.bodies, self.grid.spacing, on_corners)
 
     def _conclude(self, stable: float) -> float:
         """Let all ranks agree on sums and on the stable step, and this one on what it holds from now on."""
@@ -326,7 +318,7 @@ class Simulation:
         if status.fault:
             faults = self.exchange.communicator.allgather(self._fault)
             raise DivergedError(next(fault for fault in faults if fault))
-        self.exchange.deliver(self.bodies)
+        self.exchange.deliver(self.materials)
         self._agreed_reach = status.reach
         return status.stable
 
@@ -337,7 +329,7 @@ class Simulation:
         """
         if self._agreed_reach is None:
             self._agreed_reach = int(largest_number(self.exchange.communicator, self._reach()))
-        grid = self.exchange.new_grid(self._agreed_reach, self.bodies, self.step_number)
+        grid = self.exchange.new_grid(self._agreed_reach, self.materials, self.step_number)
         if grid is not None:
             self.grid = grid
             self.boundary_conditions = self.boundary_conditions.on(grid)
@@ -621,7 +613,19 @@ class Simulation:
         """Where the particles lie at the start of the step, for a model whose particles feel each other."""
         if not is_coupled(body.model):
             return None
-        return Neighbourhood(self.interpolator, self.grid.index, body.particles.position.copy(), dt)
+        grid = self.grid
+        repeats = [
+            n if p and grid.window is None else 0 for n, p in zip(grid.cells, grid.periodic, strict=True)
+        ]
+        return Neighbourhood(
+            interpolator=self.interpolator,
+            grid=grid.index,
+            position=body.particles.position.copy(),
+            dt=dt,
+            repeats=(repeats[0], repeats[1], repeats[2]),
+            complete=lambda sums: self.exchange.add(sums)(),
+            largest=self.exchange.communicator.largest,
+        )
 
     def constants_of_step(self, dt: float) -> Step:
         """What the stress updates of a step of ``dt`` from now on know of it."""

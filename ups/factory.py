@@ -17,7 +17,7 @@ from solver.flags import Flags
 from solver.grid import Grid, Patch, Window
 from solver.interpolation import INTERPOLATOR
 from solver.loads.loads import Loads
-from solver.materials.constitutive import initialize, is_coupled, state_record
+from solver.materials.constitutive import initialize, state_record
 from solver.materials.damage import for_constitutive_model, initialize_damage
 from solver.materials.erosion import lets_fail
 from solver.materials.failure import Failure, new_failure
@@ -197,7 +197,6 @@ class _Builder:
         from solver.boundary_conditions import BoundaryConditions
         from solver.simulation import Simulation
 
-        self._refuse_on_ranks()
         grid = self._part(self._grid())
         interpolator = self._interpolator(grid)
         contact: tuple[ContactLaw, ...] = self.spec.MaterialProperties.MPM.contact
@@ -209,7 +208,7 @@ class _Builder:
         bodies = [
             self._body(i, m, c, contact) for i, (m, c) in enumerate(zip(materials, creations, strict=True))
         ]
-        exchange = self._exchange(grid, interpolator, creations, contact)
+        exchange = self._exchange(grid, interpolator, bodies, contact)
         grid = getattr(exchange, "grid", grid)
         face_section = self.spec.Grid.BoundaryConditions
         simulation = Simulation(
@@ -232,8 +231,7 @@ class _Builder:
         self._attach_loads(simulation, loads, creations)
         self._attach_motions(simulation)
         self._attach_cohesive_zones(simulation)
-        self._attach_conversion(simulation, loads)
-
+        self._attach_conversion(simulation)
         self._attach_diffusion(simulation, loads, creations)
         return simulation
 
@@ -281,35 +279,18 @@ class _Builder:
         return replace(grid, window=Window(*self.domains[self.communicator.rank], 0))
 
     def _exchange(
-        self, grid: Grid, interpolator: Any, creations: list[Creation], contact: tuple[ContactLaw, ...]
+        self, grid: Grid, interpolator: Any, bodies: list[Any], contact: tuple[ContactLaw, ...]
     ) -> Exchange:
         """What the simulation needs of the other ranks."""
         if self.communicator.size == 1:
             return OneRank(grid)
-        from solver.domains.reach import reach
+        from solver.domains.reach import layers_reached
 
         on_corners = self.flags.use_load_curves and self.flags.use_CBDI_boundary_condition
-        own = reach(interpolator, [c.particles for c in creations], on_corners)
+        own = layers_reached(interpolator, bodies, grid.spacing, on_corners)
         layers = int(largest_number(self.communicator, own))
         sees_neighbours = any(law.needs_surface for law in contact)
         return ManyRanks(self.communicator, grid, self.domains, layers, sees_neighbours=sees_neighbours)
-
-    def _refuse_on_ranks(self) -> None:
-        """Refuse what runs on one rank only."""
-        asked = {
-            "cohesive zones": self.flags.use_cohesive_zones,
-            "scalar diffusion": self.flags.scalar_diffusion,
-            "failed particles that become another material": bool(self.spec.conversions),
-            "particles that feel each other beyond the nodes they share": any(
-                is_coupled(material.constitutive_model) for material in self.spec.materials
-            ),
-        }
-        for what, wanted in asked.items():
-            if wanted and self.communicator.size > 1:
-                at = self.place(self.flags)
-                raise ProblemError(
-                    "UPS412", f"{what}: this runs on one rank only", at, "run it without mpirun"
-                )
 
     def _grid(self) -> Grid:
         levels = self.spec.Grid.Level
@@ -366,6 +347,7 @@ class _Builder:
                 grid,
                 follow_rotation=self.flags.keep_pressure_normal,
                 on_corners=self.flags.use_CBDI_boundary_condition,
+                taken_over=self.spec.conversions,
             ),
         )
         return loads
@@ -497,38 +479,28 @@ class _Builder:
 
     def _attach_cohesive_zones(self, simulation: Any) -> None:
         """The zones of every file, between contact and the accelerations."""
-        from solver.cohesive_zones import CohesiveZones, read_zones
+        from solver.cohesive_zones import CohesiveZones, attach, read_zones
 
         if not self.flags.use_cohesive_zones:
             return
         grid, count, ids = simulation.grid, len(simulation.bodies), ParticleIds(simulation.grid)
+        found = []
         for law in self.spec.MaterialProperties.MPM.cohesive_zone:
             file = self._guard("UPS502", law, lambda law=law: self.deck.reader.open_file(law.cz_filename))  # type: ignore[misc]  # bound as mypy cannot see
             zones = self._guard("UPS502", law, lambda file=file: read_zones(file, grid, count, ids))  # type: ignore[misc]  # likewise
-            if not len(zones.area):
+            if not sum(self.communicator.allgather(len(zones.area))):
                 self.diagnostics.warning("UPS411", f"no zone of {file} lies in the grid", self.place(law))
-            simulation.cohesive_zones.append(CohesiveZones(law, zones, grid))
+            found.append(CohesiveZones(law, zones))
+        attach(simulation, found)
 
-        def act(sim: Any, dt: float) -> None:
-            for zones in sim.cohesive_zones:
-                zones.act(sim.nodal, dt)
-
-        def settle(sim: Any, dt: float) -> None:
-            for zones in sim.cohesive_zones:
-                zones.settle()
-
-        simulation.after_contact.append(act)
-        simulation.after_step.append(settle)
-
-    def _attach_conversion(self, simulation: Any, loads: Loads | None) -> None:
-        """Failed particles go to the materials that take them, with the loads on them."""
+    def _attach_conversion(self, simulation: Any) -> None:
+        """Failed particles go to the materials that take them."""
         from solver.conversion import convert_failed_particles
 
         targets = self.spec.conversions
 
         def convert(sim: Any, dt: float) -> None:
-            if convert_failed_particles(sim.bodies, targets) and loads is not None:
-                loads.resume([body.particles for body in sim.bodies], loads.counts)
+            convert_failed_particles(sim.bodies, targets, sim.exchange.communicator)
 
         if targets:
             simulation.after_step.append(convert)

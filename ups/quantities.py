@@ -174,7 +174,7 @@ def _kept_in(
 def _of_records(where: Mapping[int, tuple[int, str]]) -> Callable[[Simulation, int], Array]:
     def values(simulation: Simulation, m: int) -> Array:
         number, name = where[m]
-        return np.asarray(getattr(simulation.records(m)[number], name))
+        return np.asarray(getattr(simulation.materials[m].records[number], name))
 
     return values
 

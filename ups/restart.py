@@ -84,9 +84,9 @@ class _Stored:
 def _stored_arrays(simulation: Simulation) -> Iterator[_Stored]:
     """Every array that a checkpoint keeps; of two that claim one label the first has it."""
     declared: dict[str, Variable] = {}
-    for material in range(_materials(simulation)):
+    for material in range(len(simulation.materials)):
         taken: set[str] = set()
-        for number, record in enumerate(simulation.records(material)):
+        for number, record in enumerate(simulation.materials[material].records):
             for name, variable in state_variables(type(record)).items():
                 if not variable.restart:
                     continue
@@ -98,11 +98,6 @@ def _stored_arrays(simulation: Simulation) -> Iterator[_Stored]:
                 yield _Stored(material, number, name, mine)
 
 
-def _materials(simulation: Simulation) -> int:
-    """The number of materials with arrays of their own, cohesive zones included."""
-    return len(simulation.bodies) + len(simulation.cohesive_zones)
-
-
 def write_checkpoint(
     writer: ArchiveWriter, run: Run, state: RunState, cycle: int, gathering: Gathering
 ) -> None:
@@ -111,7 +106,7 @@ def write_checkpoint(
     own_fields: dict[Variable, dict[int, Array]] = {}
     own_others: dict[str, Array] = {}
     for stored in _stored_arrays(simulation):
-        array = getattr(simulation.records(stored.material)[stored.record], stored.name)
+        array = getattr(simulation.materials[stored.material].records[stored.record], stored.name)
         if stored.variable is None:
             own_others[stored.key] = array
         else:
@@ -205,7 +200,7 @@ def _restore_particles(
 ) -> None:
     low, high = (np.array(corner) for corner in simulation.grid.own_cells)
     arrays: dict[_Stored, list[Array]] = {stored: [] for stored in _stored_arrays(simulation)}
-    counts = dict.fromkeys(range(_materials(simulation)), 0)
+    counts = dict.fromkeys(range(len(simulation.materials)), 0)
     for rank, patches in _patches_by_rank(checkpoints, step).items():
         if not any((np.maximum(p.low, low) < np.minimum(p.high, high)).all() for p in patches):
             continue
@@ -225,11 +220,11 @@ def _restore_particles(
             parts.append(array[chosen[stored.material]])
     for material, count in counts.items():
         records = []
-        for number, record in enumerate(simulation.records(material)):
+        for number, record in enumerate(simulation.materials[material].records):
             own = {s.name: a for s, a in arrays.items() if (s.material, s.record) == (material, number)}
             mine = {name: np.concatenate(parts) for name, parts in own.items() if parts}
             records.append(_filled(type(record), count, mine))
-        simulation.replace_records(material, tuple(records))
+        simulation.materials[material].records = tuple(records)
 
 
 def _in_order(

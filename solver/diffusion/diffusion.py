@@ -13,6 +13,7 @@ from solver.creation import Creation
 from solver.diffusion import holds_diffusivity, source
 from solver.diffusion.interface import DiffusionInterface, NodalConcentration
 from solver.diffusion.solute import Solute
+from solver.domains.communicator import largest_number
 from solver.grid import Grid
 from solver.loads.scalar_flux import ScalarFlux
 from solver.particles import new_arrays
@@ -96,6 +97,7 @@ class Diffusion:
             simulation.boundary_conditions.apply_concentration(nodal.star[m], m)
             nodal.rate[m] = (nodal.star[m] - nodal.projected[m]) / dt + nodal.external[m] / nodal.mass[m]
             self._to_particles(simulation, m, body, nodal, dt)
+        self._largest = largest_number(simulation.exchange.communicator, self._largest)
         self.nodal = nodal
         counted = (b.solute.previous.sum() for b, c in zip(simulation.bodies, self.counted, strict=True) if c)
         simulation.reductions["TotalConc", -1] = float(sum(counted))

@@ -54,7 +54,7 @@ def _(interpolator: Cpti, deformation_gradient: Tensor, size: Tensor) -> Tensor:
 
 @implements(reach, Cpti)
 def _(interpolator: Cpti, domain: Tensor) -> float:
-    return 2.0 * largest_extent(domain)
+    return 1.0 + 1.5 * (largest_extent(domain) - 1.0)  # a corner is up to three quarters of the edges away
 
 
 @implements(number_of_corners, Cpti)

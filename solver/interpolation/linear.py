@@ -18,6 +18,7 @@ from solver.interpolation.shape import (
     gather,
     nothing,
     particle_domain,
+    reach,
     scatter,
     shape_functions,
 )
@@ -43,6 +44,11 @@ class LinearAxisymmetric(NamedTuple):
 
 
 implements(particle_domain, LinearAxisymmetric)(undeformed)
+
+
+@implements(reach, Linear, LinearAxisymmetric)
+def _(interpolator: Any, domain: Tensor) -> float:
+    return 1.0
 
 
 @implements(direction, Linear)

@@ -190,7 +190,10 @@ def gather(
 
 @generic_with_default
 def reach(interpolator: Any, domain: Tensor) -> float:
-    """No node of a particle is farther away than that in any direction, in cells."""
+    """No node of a particle is farther away than that in any direction, in cells.
+
+    How far threads and ranks look follows from it. The default is that of a layer of nodes around the cell's own.
+    """
     return 2.0
 
 

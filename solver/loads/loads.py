@@ -43,6 +43,7 @@ class Loads:
     grid : the grid.
     follow_rotation : turn pressures with the particles (``keepPressBCNormalToSurface``).
     on_corners : apply forces at the corners of the loaded faces (``use_CBDI_boundary_condition``).
+    taken_over : index of a material -> index of the one that its particles may go over to, with their curves.
 
     Attributes
     ----------
@@ -55,12 +56,19 @@ class Loads:
     """
 
     def __init__(
-        self, loads: Sequence[Any], grid: Grid, *, follow_rotation: bool = False, on_corners: bool = False
+        self,
+        loads: Sequence[Any],
+        grid: Grid,
+        *,
+        follow_rotation: bool = False,
+        on_corners: bool = False,
+        taken_over: Mapping[int, int] | None = None,
     ) -> None:
         self._loads = sorted((load for load in loads if isinstance(load, Load)), key=lambda load: load.rank)
         self._grid = grid
         self._follow_rotation = follow_rotation
         self._on_corners = on_corners
+        self._taken_over = taken_over or {}
         self._check()
         self._laws = [load.law(grid) for load in self._loads]
         self._carried: list[set[int]] = []
@@ -135,11 +143,13 @@ class Loads:
         counts: Mapping[int, int],
         communicator: Communicator | None = None,
     ) -> None:
-        """Go on with particles that hold their curves already, as from a checkpoint or from other materials."""
+        """Go on with particles that hold their curves already, as from a checkpoint."""
         self.counts.update(counts)
         carried = [set(np.unique(particles.load_curve).tolist()) for particles in materials]
         everywhere = zip(*(communicator or Alone()).allgather(carried), strict=True)
         self._carried = [set().union(*of_material) for of_material in everywhere]
+        for source, target in self._taken_over.items():
+            self._carried[target] |= self._carried[source]
 
     def apply(self, time: float, materials: Sequence[Particles]) -> None:
         """Set ``external_force`` and ``external_heat_rate`` of the particles of all materials, for one step.

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import singledispatch
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.declare import IntVector
 from solver.dispatch import generic, inline
 from solver.grid import GridIndex
 from solver.lanes import where
@@ -118,13 +120,23 @@ def numbers_only(model: Any) -> Any:
 
 
 class Neighbourhood(NamedTuple):
-    """Where the particles of a body lay at the start of a step, for models whose particles feel each other."""
+    """Where the particles of a body lay at the start of a step, for models whose particles feel each other.
+
+    They do so through nodes: a model sums over its particles, completes the sums by those of others, and looks at the
+    nodes within its ``coupling_length`` of a particle. All of these are stored.
+    """
 
     interpolator: Any
     grid: GridIndex
     position: NDArray[np.float64]
     """(n, 3)."""
     dt: float
+    repeats: IntVector
+    """After so many nodes they repeat in each direction; 0 where they do not, or where images are stored."""
+    complete: Callable[[NDArray[np.float64]], None]
+    """Adds to sums over particles (N, ...), in place, those of periodic images and of other ranks."""
+    largest: Callable[[NDArray[np.float64]], NDArray[np.float64]]
+    """The largest of some numbers of all ranks."""
 
 
 @singledispatch
@@ -140,6 +152,11 @@ def couple_particles(model: Any, state: Any, particles: Particles, neighbourhood
 def is_coupled(model: Any) -> bool:
     """Whether the particles of a model feel each other beside the grid."""
     return type(model) in couple_particles.registry
+
+
+def coupling_length(model: Any) -> float:
+    """How far from a particle its model looks at nodes (its attribute ``coupling_length``), m; 0 for most."""
+    return float(getattr(model, "coupling_length", 0.0))
 
 
 class NoState(NamedTuple):

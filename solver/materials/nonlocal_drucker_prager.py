@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from solver.declare import Parameter, model
+from solver.declare import IntVector, Parameter, Vector, model
 from solver.dispatch import implements, inline
 from solver.grid import GridIndex
 from solver.materials.constitutive import (
@@ -24,7 +24,7 @@ from solver.materials.constitutive import (
     stress_update,
 )
 from solver.particles import Array, Particles, StateVariable
-from solver.random import musil, weibull, weibull_law
+from solver.random import musil, turns, weibull, weibull_law
 from solver.tensor import (
     Tensor,
     determinant,
@@ -63,7 +63,7 @@ class NonlocalDruckerPrager(NamedTuple):
     alpha_p I + s / (2 sqrt(J2)); its multiplier lambda hardens locally by eta' = h_local lambda', and by
     eta_nl' = h_nonlocal <lambda'>, the mean over distances up to l_nonlocal. So bands of localized shear get a
     width that the grid does not set (Bazant and Jirasek, J. Eng. Mech. 128, 2002; Burghardt, Brannon and
-    Guilkey, Int. J. Plasticity 28, 2012). The multipliers of a body are found together, by Gauss and Seidel.
+    Guilkey, Int. J. Plasticity 28, 2012). The multipliers of a body are found together, by Jacobi's iteration.
 
     The mean is taken through the nodes of the grid with Bazant's weight exp(-(k r / l_nonlocal)^2), k^3 =
     6 sqrt(pi), of the distance r. A single point answers like a body that deforms uniformly.
@@ -100,6 +100,11 @@ class NonlocalDruckerPrager(NamedTuple):
         """The arrays of a particle set."""
         return NonlocalState
 
+    @property
+    def coupling_length(self) -> float:
+        """How far from a particle the nodes of its average lie, m."""
+        return self.l_nonlocal if self.h_nonlocal != 0.0 else 0.0
+
     def faults(self) -> list[tuple[str, str]]:
         """Fields that do not go together, each with what is wrong."""
         try:
@@ -122,9 +127,8 @@ def _(model: NonlocalDruckerPrager, state: Any, particles: Particles, material: 
     law = weibull_law(model.k_o_dist)
     if law is None:
         return
-    for number in np.unique(patch):
-        members = np.flatnonzero(patch == number)
-        draws, volume = musil(law.seed, members.size), particles.volume[members]
+    for _, members, turn in turns(patch):
+        draws, volume = musil(law.seed, int(turn.max()) + 1)[turn], particles.volume[members]
         state.cohesion[members] = weibull(draws, law.mean, law.modulus, volume, law.volume, law.modulus)
 
 
@@ -252,7 +256,7 @@ def _(model: NonlocalDruckerPrager, state: Any, particles: Particles, neighbourh
     from solver.materials.kernels.nonlocal_average import find_multipliers, half_power
 
     before = half_power(particles)
-    find_multipliers(numbers_only(model), state, particles, *neighbourhood[:3])
+    find_multipliers(numbers_only(model), state, particles, neighbourhood)
     return (half_power(particles) - before) * neighbourhood.dt
 
 
@@ -261,29 +265,50 @@ WEIGHT = (6.0 * math.sqrt(math.pi)) ** (1.0 / 3.0)
 
 
 @inline
+def place_in(i: int, first: int, nodes: int, repeat: int) -> int:
+    """Where node ``i`` of a direction is stored, or its image where nodes repeat; -1 where neither is."""
+    at = (i % repeat if repeat > 0 else i) - first
+    return at if 0 <= at < nodes else -1
+
+
+@inline
 def mean_around(
-    model: NonlocalDruckerPrager, grid: GridIndex, x: float, y: float, z: float, sums: Any, own: float
+    model: NonlocalDruckerPrager,
+    grid: GridIndex,
+    repeats: IntVector,
+    at: Vector,
+    weights: Any,
+    flows: Any,
+    own: float,
 ) -> float:
-    """<lambda'> at a place: the weighted mean over the nodes within l_nonlocal, (N, 2) sums of S and lambda S.
+    """<lambda'> at a place: the weighted mean over the nodes within l_nonlocal, of the sums (N,) of S and lambda S.
 
     ``own`` is the answer where the length is less than half a cell.
     """
     reach, h = model.l_nonlocal, grid.spacing
     if min(h[0], h[1], h[2]) > 2.0 * reach:
         return own
-    qx, qy, qz = (x - grid.anchor[0]) / h[0], (y - grid.anchor[1]) / h[1], (z - grid.anchor[2]) / h[2]
+    qx, qy, qz = (
+        (at[0] - grid.anchor[0]) / h[0],
+        (at[1] - grid.anchor[1]) / h[1],
+        (at[2] - grid.anchor[2]) / h[2],
+    )
     lx, ly, lz = reach / h[0], reach / h[1], reach / h[2]
     total = weight = 0.0
-    for k in range(max(math.floor(qz - lz), grid.first[2]), math.ceil(qz + lz) + 1):
-        for j in range(max(math.floor(qy - ly), grid.first[1]), math.ceil(qy + ly) + 1):
-            for i in range(max(math.floor(qx - lx), grid.first[0]), math.ceil(qx + lx) + 1):
-                u, v, w = i - grid.first[0], j - grid.first[1], k - grid.first[2]
-                if u >= grid.nodes[0] or v >= grid.nodes[1] or w >= grid.nodes[2]:
+    for k in range(math.floor(qz - lz), math.ceil(qz + lz) + 1):
+        w = place_in(k, grid.first[2], grid.nodes[2], repeats[2])
+        for j in range(math.floor(qy - ly), math.ceil(qy + ly) + 1):
+            v = place_in(j, grid.first[1], grid.nodes[1], repeats[1])
+            if w < 0 or v < 0:
+                continue
+            for i in range(math.floor(qx - lx), math.ceil(qx + lx) + 1):
+                u = place_in(i, grid.first[0], grid.nodes[0], repeats[0])
+                if u < 0:
                     continue
                 node = u + grid.nodes[0] * (v + grid.nodes[1] * w)
                 r2 = ((qx - i) / lx) ** 2 + ((qy - j) / ly) ** 2 + ((qz - k) / lz) ** 2
-                share = math.exp(-WEIGHT * WEIGHT * r2) * sums[node, 0]
+                share = math.exp(-WEIGHT * WEIGHT * r2) * weights[node]
                 weight += share
-                if sums[node, 0] > 1.0e-10:
-                    total += share * sums[node, 1] / sums[node, 0]
+                if weights[node] > 1.0e-10:
+                    total += share * flows[node] / weights[node]
     return total / weight

@@ -11,8 +11,9 @@ from ups.archive import Archive
 
 
 def particles_by_id(archive: Archive, step: int, label: str, material: int) -> Any:
-    """The values of a variable on the particles of a material, in the order of their ids."""
-    order = np.argsort(archive.particles(step, "p.particleID", material))
+    """The values of a variable on the particles, or zones, of a material, in the order of their ids."""
+    identity = "p.particleID" if material in archive.materials(step, "p.particleID") else "cz.CZID"
+    order = np.argsort(archive.particles(step, identity, material))
     return archive.particles(step, label, material)[order].astype(float)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from point_driver import Driver, assert_kernel_agrees, assert_turns_with_the_path
 
+from solver.domains.exchange import OneRank
 from solver.grid import Grid, Patch
 from solver.interpolation.linear import Linear
 from solver.materials.constitutive import (
@@ -146,8 +147,18 @@ def plain_multipliers(model, particles, state):
     return multiplier, average
 
 
-def couple(model, particles, state):
-    neighbourhood = Neighbourhood(Linear(), GRID.index, particles.position, 0.5)
+def couple(model, particles, state, grid=GRID):
+    periodic = OneRank(grid)
+    repeats = tuple(n * p for n, p in zip(grid.cells, grid.periodic, strict=True))
+    neighbourhood = Neighbourhood(
+        Linear(),
+        grid.index,
+        particles.position,
+        0.5,
+        repeats,
+        lambda sums: periodic.add(sums)(),
+        periodic.communicator.largest,
+    )
     return couple_particles(model, state, particles, neighbourhood)
 
 
@@ -163,6 +174,38 @@ def test_multipliers_are_those_of_a_plain_reference(length):
     np.testing.assert_allclose(state.nonlocal_hardening, -6e8 * average, rtol=1e-6)
     np.testing.assert_allclose(particles.stress[:, 0, 1], shears - G * expected / np.sqrt(0.5), rtol=1e-8)
     assert (expected[:5] > 0.0).any() or length < 0.1  # some are weakened by their neighbours alone
+
+
+@pytest.mark.parametrize("length", [0.07, 0.2, 0.9])
+def test_a_body_across_a_periodic_face_flows_as_one_in_the_middle(length):
+    """Also where the average reaches once around the domain."""
+    grid = Grid((0.0, 0.0, 0.0), (SPACING,) * 3, CELLS, (0, 0, 0), (1, 1, 0), GRID.patches)
+    model = rock(alpha=0.0, alpha_p=0.0, h_local=1e8, h_nonlocal=-6e8, l_nonlocal=length)
+    shears = COHESION * np.random.default_rng(1).uniform(0.5, 1.6, 40)
+    flows = []
+    for shift in (0.0, 3 * SPACING):
+        particles, state = body(model, shears)
+        particles.position[:, :2] = 0.2 + 0.3 * particles.position[:, :2]  # in the middle of a face
+        particles.position[:, :2] += shift
+        particles.position[:, :2] %= np.array(CELLS[:2]) * SPACING
+        couple(model, particles, state, grid)
+        flows.append((state.plastic_strain, state.nonlocal_hardening))
+    assert np.ptp(particles.position[:, 0]) > 0.5  # across the face
+    np.testing.assert_allclose(*(f[0] for f in flows), rtol=1e-9)
+    np.testing.assert_allclose(*(f[1] for f in flows), rtol=1e-9)
+
+
+def test_average_flow_that_hardens_strongly_is_found():
+    """The plain reference, whose sweeps would swing ever wider, is asked whether it would stay."""
+    model = rock(alpha=0.0, alpha_p=0.0, h_local=1e8, h_nonlocal=6e9, l_nonlocal=0.2)
+    shears = COHESION * np.random.default_rng(1).uniform(0.5, 1.6, 40)
+    particles, state = body(model, shears)
+    couple(model, particles, state)
+    stiffness = G / np.sqrt(0.5) + 1e8
+    load = shears - COHESION - state.nonlocal_hardening
+    expected = np.where(shears > COHESION, np.maximum(load, 0.0) / stiffness, 0.0)
+    np.testing.assert_allclose(state.plastic_strain, expected, rtol=1e-9, atol=1e-15)
+    assert (state.nonlocal_hardening > 0.0).all()
 
 
 def test_a_body_that_flows_alike_everywhere_is_a_point():
