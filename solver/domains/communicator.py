@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[Any]
 Value = TypeVar("Value")
-Waiting = Callable[[], dict[int, Array]]
-"""Ends a transfer: waits for what was sent to arrive and returns what came, by the rank that sent it."""
+Waiting = Callable[[], None]
+"""Ends a transfer: waits until what was sent may be changed, and what is to come has come."""
 
 
 class Communicator(Protocol):
@@ -45,8 +45,11 @@ class Communicator(Protocol):
     def allgather(self, sendobj: Value, /) -> list[Value]:
         """The values of all ranks, by rank, on every rank."""
 
-    def send(self, arrays: Mapping[int, Array], sizes: Mapping[int, int]) -> Waiting:
-        """Start to send an array of doubles to each of some ranks, and to receive ``sizes`` doubles from others."""
+    def send(self, arrays: Mapping[int, Array], into: Mapping[int, Array]) -> Waiting:
+        """Start to send an array of doubles to each of some ranks, and to receive from others.
+
+        What comes is put at the start of the arrays ``into``, by the rank that sends it, which may be longer.
+        """
 
     def send_unannounced(self, messages: Mapping[int, bytes]) -> dict[int, bytes]:
         """Send bytes to some ranks, and return what came from the same ranks; lengths need not be known."""
@@ -87,9 +90,9 @@ class Alone:
         """The value alone."""
         return [sendobj]
 
-    def send(self, arrays: Mapping[int, Array], sizes: Mapping[int, int]) -> Waiting:
+    def send(self, arrays: Mapping[int, Array], into: Mapping[int, Array]) -> Waiting:
         """There is nobody to send to."""
-        return dict
+        return _nothing
 
     def send_unannounced(self, messages: Mapping[int, bytes]) -> dict[int, bytes]:
         """There is nobody to send to."""
@@ -105,6 +108,10 @@ class Alone:
 
     def abort(self) -> None:
         """Nobody else has to be ended."""
+
+
+def _nothing() -> None:
+    """Wait for nobody."""
 
 
 def largest_number(communicator: Communicator, value: float) -> float:

@@ -67,8 +67,8 @@ class Exchange(Protocol):
     def add(self, *sums: Array, touched: Array | None = None) -> Callable[[], None]:
         """Start to add sums over particles (N, ...) over all copies of a node; what is returned finishes it.
 
-        In between they must not be changed. Several of them share messages. With ``touched`` (N or more) a node
-        becomes touched (1) where any copy is.
+        In between they must not be changed. Several of them share messages. With ``touched`` (N or more) only nodes
+        that are touched (1) have sums, and a node becomes touched where any copy is.
         """
 
     def repeat(self, field: Array, touched: Array) -> None:
@@ -189,16 +189,7 @@ class ManyRanks:
 
     def add(self, *sums: Array, touched: Array | None = None) -> Callable[[], None]:
         """Send the sums at shared nodes; finishing adds those of all ranks."""
-        if touched is None:
-            return self.halo.add(*sums)
-        marks = touched[: len(sums[0])].astype(float)
-        finish = self.halo.add(*sums, marks)
-
-        def finish_with_marks() -> None:
-            finish()
-            touched[: len(marks)] = marks > 0.0
-
-        return finish_with_marks
+        return self.halo.add(*sums, touched=touched)
 
     def repeat(self, field: Array, touched: Array) -> None:
         """What acts at nodes acts at all copies."""

@@ -11,7 +11,7 @@ import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,17 @@ from numpy.typing import NDArray
 from solver.declare import IntVector
 from solver.domains.communicator import Communicator
 from solver.domains.decomposition import Domain
+from solver.domains.rows import (
+    add_own,
+    add_rows,
+    mark_filled,
+    mark_touched,
+    pack_places,
+    pack_rows,
+    take_out,
+    touch,
+    touch_own,
+)
 from solver.grid import Grid, Window
 
 Array = NDArray[Any]
@@ -33,10 +44,21 @@ class _Link:
     """The index of a copy less that of the node of this rank."""
     nodes: Array
     """(k,) storage indices of the nodes of this rank."""
+    places: Array
+    """(k,) where they are among all shared nodes of this rank."""
     mine: Array
     """Places in ``nodes`` of those that this rank counts."""
     theirs: Array
     """Places in ``nodes`` of those that the other rank counts."""
+
+
+class _Buffers(NamedTuple):
+    """What one transfer needs until it has ended."""
+
+    marks: Array
+    """(shared nodes,) 1 where this rank has something to add."""
+    sent: dict[int, Array]
+    received: dict[int, Array]
 
 
 class Halo:
@@ -60,68 +82,103 @@ class Halo:
         self._communicator = communicator
         self._me = communicator.rank
         halo = grid.window.halo
-        self._links = list(_links(grid, domains, self._me, halo))
+        found = _links(grid, domains, self._me, halo)
+        everywhere = [link.nodes for link in found]
+        self._shared = np.unique(np.concatenate([np.zeros(0, np.int64), *everywhere]))
+        self._links = [replace(link, places=np.searchsorted(self._shared, link.nodes)) for link in found]
         self.neighbours = sorted({link.rank for link in self._links} - {self._me})
         self._by_rank = {r: [link for link in self._links if link.rank == r] for r in self.neighbours}
         self._sizes = {r: sum(len(link.nodes) for link in links) for r, links in self._by_rank.items()}
         self._order = self._order_of_copies()
-        everywhere = [link.nodes for link in self._links]
-        self._shared = np.unique(np.concatenate([np.zeros(0, np.int64), *everywhere]))
+        self._free: dict[int, list[_Buffers]] = {}
+        self._own: dict[int, Array] = {}
         self.counted = np.zeros(grid.number_of_nodes, np.bool_)
         low, high = _counted_box(grid, domains[self._me], halo)
         self.counted[_flat(grid, low, high)] = True
-
-    @property
-    def doubles_sent(self) -> int:
-        """Numbers sent by one :meth:`add` of one number a node."""
-        return sum(self._sizes.values())
 
     @property
     def turns(self) -> list[tuple[int, IntVector]]:
         """The ranks that store nodes of this one, each with the index of its copies less that of the nodes here."""
         return [(link.rank, link.shift) for link in self._links]
 
-    def add(self, *sums: Array) -> Callable[[], None]:
+    def add(self, *sums: Array, touched: Array | None = None) -> Callable[[], None]:
         """Start to add sums (N, ...) at shared nodes over all copies; what is returned finishes it in place.
 
-        All go in one message to each neighbour. Until then they may be read, and must not be changed.
+        All go in one message to each neighbour, with the rows of the nodes that are touched (N or more), or that have
+        numbers other than 0; the others have to be 0. A node becomes touched (1) where any copy is. Until the
+        transfer has ended the sums may be read, and must not be changed.
         """
         rows = [array.reshape(len(array), -1) for array in sums]
-        sent = {
-            r: np.concatenate([part[link.nodes].ravel() for link in links for part in rows])
-            for r, links in self._by_rank.items()
-        }
         width = sum(part.shape[1] for part in rows)
-        wait = self._communicator.send(sent, {r: size * width for r, size in self._sizes.items()})
+        buffers = self._buffers(width)
+        self._mark(buffers.marks, rows, touched)
+        sent = {r: buffers.sent[r][: self._pack(r, rows, buffers)] for r in self._by_rank}
+        wait = self._communicator.send(sent, buffers.received)
 
         def finish() -> None:
-            received = wait()
-            of_link: dict[int, Array] = {}
-            for r, links in self._by_rank.items():
-                of_link |= {id(link): numbers for link, numbers in _parts(received[r], links, width)}
-            start = 0
-            for part in rows:
-                self._add_up(
-                    part, {key: _columns(theirs, start, part, width) for key, theirs in of_link.items()}
-                )
-                start += part.shape[1]
+            wait()
+            if len(self._shared):
+                self._add_up(rows, touched, buffers)
+            self._free[width].append(buffers)
 
         return finish
 
-    def _add_up(self, rows: Array, of_link: dict[int, Array]) -> None:
-        """Add to the sums (N, components) those of other ranks, by link, and those of copies on this one."""
-        if not len(self._shared):
+    def _buffers(self, width: int) -> _Buffers:
+        """Room for the transfer of so many numbers a node; that of a transfer that has ended, where there is some."""
+        free = self._free.setdefault(width, [])
+        if free:
+            return free.pop()
+        sizes = {r: len(self._by_rank[r]) + size * (1 + width) for r, size in self._sizes.items()}
+        sent, received = ({r: np.empty(size) for r, size in sizes.items()} for _ in range(2))
+        return _Buffers(np.empty(len(self._shared), np.uint8), sent, received)
+
+    def _mark(self, marks: Array, rows: Sequence[Array], touched: Array | None) -> None:
+        """Find the shared nodes to which this rank adds something."""
+        if touched is not None:
+            mark_touched(touched, self._shared, marks)
             return
-        own = rows[self._shared]
-        of_link |= {
-            id(link): rows[self._opposite(link).nodes] for link in self._links if link.rank == self._me
+        marks[:] = 0
+        for part in rows:
+            mark_filled(part, self._shared, marks)
+
+    def _pack(self, rank: int, rows: Sequence[Array], buffers: _Buffers) -> int:
+        """Fill the message to a rank, link by link, and return its length."""
+        message, end = buffers.sent[rank], 0
+        for link in self._by_rank[rank]:
+            start, end = end, pack_places(buffers.marks, link.places, message, end)
+            for part in rows:
+                end = pack_rows(part, link.nodes, message, start, end)
+        return end
+
+    def _add_up(self, rows: Sequence[Array], touched: Array | None, buffers: _Buffers) -> None:
+        """Add to the sums those of other ranks and of copies on this one, in the order of copies."""
+        came = {
+            id(link): (buffers.received[r], start)
+            for r, links in self._by_rank.items()
+            for link, start in _starts(buffers.received[r], links, sum(part.shape[1] for part in rows))
         }
-        rows[self._shared] = 0.0
-        for link in self._order:
-            if link is None:
-                rows[self._shared] += own
-            else:
-                rows[link.nodes] += of_link[id(link)]
+        ends = {key: start + 1 + int(message[start]) for key, (message, start) in came.items()}
+        for part in rows:
+            own = self._own.setdefault(part.shape[1], np.empty((len(self._shared), part.shape[1])))
+            take_out(part, self._shared, buffers.marks, own)
+            for link in self._order:
+                if link is None:
+                    add_own(part, self._shared, self._all_places, buffers.marks, own)
+                elif link.rank == self._me:
+                    add_own(part, link.nodes, self._opposite(link).places, buffers.marks, own)
+                else:
+                    message, start = came[id(link)]
+                    ends[id(link)] = add_rows(part, link.nodes, message, start, ends[id(link)])
+        if touched is not None:
+            for link in self._links:
+                if link.rank == self._me:
+                    touch_own(touched, link.nodes, self._opposite(link).places, buffers.marks)
+                else:
+                    touch(touched, link.nodes, *came[id(link)])
+
+    @cached_property
+    def _all_places(self) -> Array:
+        return np.arange(len(self._shared))
 
     def _order_of_copies(self) -> list[_Link | None]:
         """The links in the order in which copies are added; None stands for this rank's own nodes."""
@@ -137,11 +194,14 @@ class Halo:
         width = rows.shape[1]
         mine, theirs = self._counted_here, self._counted_there
         sent = {r: np.concatenate([rows[k.nodes].ravel() for k in links]) for r, links in mine.items()}
-        sizes = {r: sum(len(k.nodes) for k in links) * width for r, links in theirs.items()}
-        received = self._communicator.send(sent, sizes)()
+        received = {r: np.empty(sum(len(k.nodes) for k in links) * width) for r, links in theirs.items()}
+        self._communicator.send(sent, received)()
         for r, links in theirs.items():
-            for link, numbers in _parts(received[r], links, width):
-                rows[link.nodes] = numbers.reshape(-1, width)
+            start = 0
+            for link in reversed(links):  # a rank sends by its own shifts, which are the opposite of ours
+                end = start + len(link.nodes) * width
+                rows[link.nodes] = received[r][start:end].reshape(-1, width)
+                start = end
         for link in self._links:
             if link.rank == self._me:
                 source = self._opposite(link)
@@ -161,20 +221,12 @@ class Halo:
         return {r: [replace(k, nodes=k.nodes[k.theirs]) for k in links] for r, links in self._by_rank.items()}
 
 
-def _parts(numbers: Array, links: Sequence[_Link], width: int) -> Iterator[tuple[_Link, Array]]:
-    """What a rank sent for each of its links; it sent by its own shifts, which are the opposite of ours."""
+def _starts(message: Array, links: Sequence[_Link], width: int) -> Iterator[tuple[_Link, int]]:
+    """Where the parts of a message begin; a rank sends by its own shifts, which are the opposite of ours."""
     start = 0
     for link in reversed(links):
-        end = start + len(link.nodes) * width
-        yield link, numbers[start:end]
-        start = end
-
-
-def _columns(numbers: Array, start: int, like: Array, width: int) -> Array:
-    """Of the arrays that came for a link, one behind the other, that which begins at a component of ``width``."""
-    count = len(numbers) // width
-    columns = like.shape[1]
-    return numbers[count * start : count * (start + columns)].reshape(count, columns)
+        yield link, start
+        start += 1 + int(message[start]) * (1 + width)
 
 
 def _links(grid: Grid, domains: Sequence[Domain], me: int, halo: int) -> list[_Link]:
@@ -195,7 +247,8 @@ def _links(grid: Grid, domains: Sequence[Domain], me: int, halo: int) -> list[_L
             nodes = _flat(grid, *box)
             mine = _inside(box, counted[me])
             theirs = _inside(box, counted[rank] - shift)
-            found.append(_Link(rank, (x, y, z), nodes, np.flatnonzero(mine), np.flatnonzero(theirs)))
+            places = np.arange(len(nodes))
+            found.append(_Link(rank, (x, y, z), nodes, places, np.flatnonzero(mine), np.flatnonzero(theirs)))
     return sorted(found, key=lambda link: (link.rank, link.shift))
 
 

@@ -114,15 +114,13 @@ class Mpi:
         result: list[Value] = self._world.allgather(sendobj)
         return result
 
-    def send(self, arrays: Mapping[int, Array], sizes: Mapping[int, int]) -> Waiting:
-        """Start transfers of doubles whose lengths both sides know."""
-        received = {rank: np.empty(size) for rank, size in sizes.items()}
-        requests = [self._world.Irecv(buffer, rank, HALO) for rank, buffer in received.items()]
+    def send(self, arrays: Mapping[int, Array], into: Mapping[int, Array]) -> Waiting:
+        """Start transfers of doubles."""
+        requests = [self._world.Irecv(buffer, rank, HALO) for rank, buffer in into.items()]
         requests += [self._world.Isend(array, rank, HALO) for rank, array in arrays.items()]
 
-        def wait() -> dict[int, Array]:
+        def wait() -> None:
             self._mpi.Request.Waitall(requests)
-            return received
 
         return wait
 

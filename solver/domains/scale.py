@@ -26,7 +26,7 @@ class Cost(NamedTuple):
     neighbours: int
     messages: int
     halo_bytes: int
-    """Sums at shared nodes."""
+    """Sums at shared nodes, where particles touch all of them; the rows of nodes that none touches are not sent."""
     particle_bytes: float
     """Particles that leave, and a number of particles of each body in every message."""
 
@@ -70,8 +70,9 @@ def cost(
     Parameters
     ----------
     cells, layers, cut : as for :func:`shared_nodes`.
-    channels : numbers a node of each sum: ``CHANNELS`` of ``solver.kernels.transfer`` and one more for every body,
-        then those of contact and of what else is summed.
+    channels : numbers a node of each sum: ``CHANNELS`` of ``solver.kernels.transfer`` for every body, then those of
+        contact and of what else is summed. With them goes a number that says which node it is, and in each message
+        one that says how many there are.
     bytes_a_particle : all that a particle carries.
     leavers : particles that leave in a step, for instance speed times dt times the particles a volume times the
         area of the cuts.
@@ -81,6 +82,6 @@ def cost(
     return Cost(
         neighbours,
         neighbours * (len(channels) + 1),
-        NUMBER * nodes * sum(channels),
+        NUMBER * sum(nodes * (1 + c) + neighbours for c in channels),
         leavers * bytes_a_particle + neighbours * NUMBER,
     )
