@@ -20,9 +20,9 @@ Array = NDArray[Any]
 
 BALANCE_EVERY = 25
 """Steps between looks at the balance of the ranks."""
-UNBALANCED = 1.2
+UNBALANCED = 1.05
 """Largest work of a rank over the mean above which domains are cut anew."""
-WORTHWHILE = 0.9
+WORTHWHILE = 0.97
 """Domains are cut anew only if that brings the imbalance to this part of what it was, or less."""
 
 
