@@ -30,6 +30,12 @@ TURN = 0.1
 """Seconds between the ranks that then end the run."""
 
 
+def yield_core() -> None:
+    """Let another process run, where one waits for the core."""
+    if hasattr(os, "sched_yield"):
+        os.sched_yield()
+
+
 class MissingMpiError(RuntimeError):
     """The program was started on several ranks, and mpi4py or the MPI library is not there."""
 
@@ -101,8 +107,13 @@ class Mpi:
 
     def _combined(self, values: Array, operation: Any) -> Array:
         result = np.empty_like(values)
-        self._world.Allreduce(np.ascontiguousarray(values), result, op=operation)
+        self._end([self._world.Iallreduce(np.ascontiguousarray(values), result, op=operation)])
         return result
+
+    def _end(self, requests: list[Any]) -> None:
+        """Wait for transfers. MPI would wait at full speed, and keep a core from a rank that is still at work."""
+        while not self._mpi.Request.Testall(requests):
+            yield_core()
 
     def from_root(self, value: Value) -> Value:
         """The value of rank 0."""
@@ -120,7 +131,7 @@ class Mpi:
         requests += [self._world.Isend(array, rank, HALO) for rank, array in arrays.items()]
 
         def wait() -> None:
-            self._mpi.Request.Waitall(requests)
+            self._end(requests)
 
         return wait
 
@@ -130,11 +141,12 @@ class Mpi:
         received = {}
         status = self._mpi.Status()
         for rank in sorted(messages):
-            message = self._world.Mprobe(rank, PARTICLES, status)
+            while (message := self._world.Improbe(rank, PARTICLES, status)) is None:
+                yield_core()
             buffer = bytearray(status.Get_count(self._mpi.BYTE))
             message.Recv(buffer)
             received[rank] = bytes(buffer)
-        self._mpi.Request.Waitall(requests)
+        self._end(requests)
         return received
 
     def deal(self, messages: Sequence[bytes]) -> list[bytes]:
