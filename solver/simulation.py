@@ -212,13 +212,14 @@ class Simulation:
 
     def initial_time_step(self) -> float:
         """The stable first step, from the models' initial wave speeds."""
-        stable = min((self._initial_limit(body) for body in self.bodies), default=math.inf)
+        stable = min((self.initial_limit(body) for body in self.bodies), default=math.inf)
         return self._bounded(-largest_number(self.exchange.communicator, -stable))
 
     def _bounded(self, stable: float) -> float:
         return min([stable, *(limit(self.time) for limit in self.time_step_limits)])
 
-    def _initial_limit(self, body: Body) -> float:
+    def initial_limit(self, body: Body) -> float:
+        """The stable first step of a body's particles on this rank."""
         particles = body.particles
         speed = initial_sound_speed(body.model, particles.mass / particles.volume, particles.temperature)
         waves = settle.initial_wave_speed(

@@ -215,6 +215,8 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
 
     None where a number of the sample cannot be computed in Python, such as the logarithm of a rate of zero.
     """
+    if not len(body.particles):
+        return 0.0
     chosen = sample(len(body.particles))
 
     def of_sample(record: Any) -> Any:
@@ -231,7 +233,7 @@ def stress_operations(simulation: Simulation, body: Body) -> float | None:
                 failure,
                 of_sample(body.particles),
                 body.material,
-                simulation.constants_of_step(simulation.initial_time_step()),
+                simulation.constants_of_step(simulation.initial_limit(body)),
                 Kinematics(simulation.flags.minimum_subcycles_for_F, False),
                 np.zeros(0, np.int64),
                 np.zeros(0),

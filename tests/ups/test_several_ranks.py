@@ -13,6 +13,7 @@ from thread_ranks import on_ranks
 from ups.archive import Archive
 from ups.deck import read_deck
 from ups.factory import build
+from ups.profile import Profile
 from ups.session import resume_run, run_deck
 
 ROUNDING = 1e-12
@@ -296,6 +297,23 @@ def test_nodal_values_are_written_in_steps_after_which_the_halo_grows(tmp_path: 
     on_ranks(3, lambda rank: run_deck(read_deck(path), output=tmp_path / "many.uda", communicator=rank))
     found = disagreement(tmp_path / "one.uda", tmp_path / "many.uda")
     assert max(found.values()) < ROUNDING, found
+
+
+def test_the_phases_of_ranks_without_particles_of_a_body_are_measured(tmp_path: Path) -> None:
+    path = write(tmp_path, CASES["friction"])
+    build(read_deck(path))  # loads the models, which threads must not do at a time
+    profiles = [Profile() for _ in range(2)]
+    on_ranks(
+        2,
+        lambda rank: run_deck(
+            read_deck(path),
+            output=tmp_path / "many.uda",
+            max_steps=5,
+            communicator=rank,
+            observers=[profiles[rank.rank]],
+        ),
+    )
+    assert [profile.report.steps for profile in profiles if profile.report] == [4, 4]
 
 
 def test_domains_follow_particles_that_move(tmp_path: Path) -> None:
