@@ -193,7 +193,7 @@ def run(
         interrupts = Interrupts()
         observers: list[Observer] = [interrupts] if quiet else [interrupts, Progress()]
         show_warnings = checked = _printer_of_warnings(verbose and not ranks.rank, quiet)
-        if live is not None and ranks.rank == 0:
+        if live is not None:
             from ups.pictures.live import Live, check_variable
             from ups.pictures.window import has_display
 
@@ -201,7 +201,8 @@ def run(
                 check_variable(deck, live)
                 show_warnings(deck)
 
-            observers.append(Live(live, window=has_display(), stream=None if quiet else sys.stdout))
+            if ranks.rank == 0:  # which draws what all have written
+                observers.append(Live(live, window=has_display(), stream=None if quiet else sys.stdout))
         if profile:
             from ups.profile import Profile
 

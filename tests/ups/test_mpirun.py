@@ -82,6 +82,13 @@ def test_a_fault_of_the_deck_is_said_once(tmp_path: Path) -> None:
     assert not (tmp_path / "x.uda").exists()
 
 
+def test_a_live_picture_that_cannot_be_is_said_once(tmp_path: Path) -> None:
+    done = mpirun(2, "run", two_blocks(tmp_path), "--live", "p.nothing", "--output", "x.uda", folder=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.count("--live: there is no variable p.nothing") == 1
+    assert "Abort" not in done.stdout + done.stderr  # no rank was ended by another
+
+
 def test_a_run_that_diverges_ends_on_all_ranks_with_one_message(tmp_path: Path) -> None:
     path = two_blocks(tmp_path)
     path.write_text(path.read_text().replace("<timestep_multiplier>0.4", "<timestep_multiplier>40."))

@@ -9,13 +9,18 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from PIL import Image
+from thread_ranks import ThreadRank, on_ranks
 
 from cli import main
+from ups.archive import Archive
+from ups.deck import read_deck
 from ups.inspect.compare import Tolerances, compare_archives
-from ups.pictures.live import draw_at_each, picture_of
+from ups.pictures.live import Live, draw_at_each, picture_of
+from ups.session import run_deck
 
 ROOT = Path(__file__).resolve().parents[3]
 DECK = ROOT / "inputs" / "MPM" / "collidingDisks.ups"
@@ -49,6 +54,26 @@ def test_the_picture_of_a_run_that_is_not_changed_by_it(tmp_path: Path) -> None:
     plain = run(tmp_path / "without", str(DECK))
     assert not picture_of(plain).exists()
     assert compare_archives(archive, plain, Tolerances(0.0, 0.0)).status == 0
+
+
+def test_the_picture_of_several_ranks_shows_the_particles_of_all(tmp_path: Path) -> None:
+    """That of three ranks is that of one, and not that of the particles of the first."""
+    deck = read_deck(DECK)
+    run_deck(deck, output=tmp_path / "one", max_steps=30, observers=[Live("p.velocity:X", window=False)])
+
+    def go(rank: ThreadRank) -> int:
+        watching = [Live("p.velocity:X", window=False)] if rank.rank == 0 else []
+        result = run_deck(
+            read_deck(DECK), output=tmp_path / "many", max_steps=30, observers=watching, communicator=rank
+        )
+        grid = result.archive.grid().levels[0]
+        return sum(len(result.archive.particles(-1, "p.x", 0, p.id)) for p in grid.patches if p.proc == 0)
+
+    of_first = on_ranks(3, go)[0]
+    assert of_first < len(Archive(tmp_path / "many").particles(-1, "p.x", 0))
+    one, many = (np.asarray(Image.open(picture_of(tmp_path / name))) for name in ("one", "many"))
+    assert one.shape == many.shape
+    assert np.mean((one != many).any(axis=2)) < 1e-3
 
 
 def test_the_deck_may_stand_behind_the_option(tmp_path: Path) -> None:
