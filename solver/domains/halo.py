@@ -31,6 +31,7 @@ from solver.domains.rows import (
     touch_own,
 )
 from solver.grid import Grid, Window
+from solver.workspace import Workspace
 
 Array = NDArray[Any]
 
@@ -91,7 +92,7 @@ class Halo:
         self._sizes = {r: sum(len(link.nodes) for link in links) for r, links in self._by_rank.items()}
         self._order = self._order_of_copies()
         self._free: dict[int, list[_Buffers]] = {}
-        self._own: dict[int, Array] = {}
+        self._room = Workspace()
         self.counted = np.zeros(grid.number_of_nodes, np.bool_)
         low, high = _counted_box(grid, domains[self._me], halo)
         self.counted[_flat(grid, low, high)] = True
@@ -159,7 +160,8 @@ class Halo:
         }
         ends = {key: start + 1 + int(message[start]) for key, (message, start) in came.items()}
         for part in rows:
-            own = self._own.setdefault(part.shape[1], np.empty((len(self._shared), part.shape[1])))
+            components = part.shape[1]
+            own = self._room.rows(f"own {components}", len(self._shared), np.float64, components)
             take_out(part, self._shared, buffers.marks, own)
             for link in self._order:
                 if link is None:

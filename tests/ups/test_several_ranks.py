@@ -205,6 +205,10 @@ CASES = {
     "periodic, linear": blocks("single_velocity", "linear", PERIODIC.replace("[0,0,1]", "[0,0,0]"), SLOW),
     "axisymmetric": blocks("friction_bard", flags=AXISYMMETRIC),
     "XPIC": blocks("approach", flags="<XPIC2>true</XPIC2>"),
+    "gradients": blocks(
+        "friction_bard",
+        flags="<UseGradientEnhancedVelocityProjection>true</UseGradientEnhancedVelocityProjection>",
+    ),
     "splines": blocks("approach", "3rdorderBS"),
     "conduction": blocks("single_velocity", flags=HEAT),
     "stabilized pressure": blocks(
