@@ -5,6 +5,7 @@ Nodes near a cut are stored by several ranks. Every sum over particles is added 
 node, in the same order everywhere, so that all copies hold the same bits; what then happens at the nodes happens
 to every copy alike. After a step particles move to the rank of their cell.
 
-``communicator`` passes messages, ``decomposition`` cuts the grid, ``halo`` adds up shared nodes, ``migration``
-moves particles, and ``exchange`` is what a simulation sees of all that. ``mpi`` alone knows MPI.
+``communicator`` passes messages, ``decomposition`` cuts the grid, ``reach`` says how wide the halo is, ``halo`` adds up
+shared nodes by messages of ``rows``, ``migration`` moves particles, and ``exchange`` is what a simulation sees of all
+that. ``mpi`` alone knows MPI.
 """
