@@ -126,7 +126,9 @@ ROWS = 10
 
 
 @inline
-def prepare_corners(interpolator: Any, grid: GridIndex, particles: Particles, first: int, room: Room) -> None:
+def prepare_corners(
+    interpolator: Any, grid: GridIndex, block: NodeBlock, particles: Particles, first: int, room: Room
+) -> bool:
     """Store the corners of the particles ``first`` to ``first + 7``."""
     p: Any = UpToEight(first, particles.mass.shape[0] - 1)
     factors = room.factors
@@ -147,6 +149,7 @@ def prepare_corners(interpolator: Any, grid: GridIndex, particles: Particles, fi
         put_lanes(factors, row + 7, 0, corner.gx)
         put_lanes(factors, row + 8, 0, corner.gy)
         put_lanes(factors, row + 9, 0, corner.gz)
+    return True
 
 
 class PreparedCorner(NamedTuple):

@@ -74,12 +74,16 @@ def new_room() -> Room:
 
 
 @generic_with_default
-def prepare(interpolator: Any, grid: GridIndex, particles: Particles, first: int, room: Room) -> None:
+def prepare(
+    interpolator: Any, grid: GridIndex, block: NodeBlock, particles: Particles, first: int, room: Room
+) -> bool:
     """Do for the particles ``first`` to ``first + 7`` what is sooner done for eight at once.
 
     :func:`is_near`, :func:`scatter` and :func:`gather` of a particle have to be called after that, with its number
-    among the eight as ``lane``, and before it is called for the next eight.
+    among the eight as ``lane``, and before it is called for the next eight. False where it was seen early that none
+    of the eight has nodes in the block.
     """
+    return True
 
 
 @inline

@@ -22,7 +22,7 @@ from solver.interpolation.shape import (
     scatter,
     shape_functions,
 )
-from solver.lanes import Lanes, UpToEight, above, every, floor, lanes_at, put_lanes
+from solver.lanes import Lanes, UpToEight, above, anywhere, every, floor, lanes_at, put_lanes
 from solver.particles import Particles
 from solver.tensor import Tensor
 
@@ -91,11 +91,24 @@ def prepare_direction(
 
 
 @inline
-def prepare_product(interpolator: Any, grid: GridIndex, particles: Particles, first: int, room: Room) -> None:
+def prepare_product(
+    interpolator: Any, grid: GridIndex, block: NodeBlock, particles: Particles, first: int, room: Room
+) -> bool:
     """The weights of eight particles in the three directions; short chains of divisions, side by side."""
-    prepare_direction(interpolator, grid, particles, first, 0, room.factors)
-    prepare_direction(interpolator, grid, particles, first, 1, room.factors)
-    prepare_direction(interpolator, grid, particles, first, 2, room.factors)
+    factors = room.factors
+    prepare_direction(interpolator, grid, particles, first, 1, factors)
+    prepare_direction(interpolator, grid, particles, first, 2, factors)
+    if not (block.whole or (any_reach(block, 1, factors) and any_reach(block, 2, factors))):
+        return False
+    prepare_direction(interpolator, grid, particles, first, 0, factors)
+    return True
+
+
+@inline
+def any_reach(block: NodeBlock, axis: int, factors: Any) -> bool:
+    """Whether any of eight particles has nodes between the bounds of a block in one direction."""
+    start, count = lanes_at(factors, 8 * axis + FIRST, 0), lanes_at(factors, 8 * axis + COUNT, 0)
+    return anywhere((start < 1.0 * block.high[axis]) & (start + count > 1.0 * block.low[axis]))
 
 
 class Corner(NamedTuple):

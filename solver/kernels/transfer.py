@@ -70,7 +70,8 @@ def particles_to_grid(
     """
     room = new_room()
     for start in range(0, particles.mass.shape[0], WIDTH):
-        prepare(interpolator, grid, particles, start, room)
+        if not prepare(interpolator, grid, block, particles, start, room):
+            continue
         for lane in range(min(WIDTH, particles.mass.shape[0] - start)):
             p = start + lane
             if is_near(interpolator, grid, block, particles, p, lane, room):
@@ -163,7 +164,7 @@ def smooth_velocity(
     room = new_room()
     everywhere = NodeBlock((0, 0, 0), grid.nodes, True)
     for start in range(0, particles.mass.shape[0], WIDTH):
-        prepare(interpolator, grid, particles, start, room)
+        prepare(interpolator, grid, everywhere, particles, start, room)
         for lane in range(min(WIDTH, particles.mass.shape[0] - start)):
             p = start + lane
             v = gather(interpolator, grid, particles, p, lane, rows, room).value
@@ -216,12 +217,13 @@ def grid_to_particles(
     :class:`Motion`, number by number.
     """
     room = new_room()
+    everywhere = NodeBlock((0, 0, 0), grid.nodes, True)
     for chunk in range(first, last):
         kinetic = thermal = 0.0
         px = py = pz = cx = cy = cz = 0.0
         end = min((chunk + 1) * CHUNK, particles.mass.shape[0])
         for start in range(chunk * CHUNK, end, WIDTH):
-            prepare(interpolator, grid, particles, start, room)
+            prepare(interpolator, grid, everywhere, particles, start, room)
             for lane in range(min(WIDTH, end - start)):
                 p = start + lane
                 at = gather(interpolator, grid, particles, p, lane, nodal, room)
