@@ -192,8 +192,8 @@ class BoundaryConditions:
             axis=np.array([r[1] for r in rows], dtype=np.int64),
             value=np.array([r[2] for r in rows], dtype=np.float64).reshape(-1, 3),
             start=start.astype(np.int64),
-            node=np.concatenate([empty] + [r[3] for r in rows]),
-            source=np.concatenate([empty] + [r[4] for r in rows]),
+            node=np.concatenate([empty] + [r[3] for r in rows]).astype(np.uintp),
+            source=np.concatenate([empty] + [r[4] for r in rows]).astype(np.uintp),
         )
 
     def _face_operations(

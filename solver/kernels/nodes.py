@@ -19,19 +19,25 @@ from solver.nodal import EMPTY_MASS, NodalFields
 def apply_operations(operations: Operations, field: Any) -> None:
     """Apply boundary operations to nodal values (N, components) in order."""
     for o in range(operations.kind.shape[0]):
-        kind, axis = operations.kind[o], operations.axis[o]
-        for e in range(operations.start[o], operations.start[o + 1]):
-            node, source = operations.node[e], operations.source[e]
-            if kind == ZERO_NORMAL:
-                field[node, axis] = 0.0
-                continue
-            for c in range(field.shape[1]):
-                if kind == SET:
-                    field[node, c] = operations.value[o, c]
-                elif kind == MIRROR:
-                    field[node, c] = -field[source, c] if c == axis else field[source, c]
-                elif kind == GRADIENT:
-                    field[node, c] = field[source, c] - operations.value[o, c]
+        start, end = operations.start[o], operations.start[o + 1]
+        node, source = operations.node[start:end], operations.source[start:end]
+        kind, axis, value = operations.kind[o], operations.axis[o], operations.value[o]
+        if kind == ZERO_NORMAL:
+            for e in range(node.shape[0]):
+                field[node[e], axis] = 0.0
+        elif kind == SET:
+            for e in range(node.shape[0]):
+                for c in range(field.shape[1]):
+                    field[node[e], c] = value[c]
+        elif kind == MIRROR:
+            for e in range(node.shape[0]):
+                for c in range(field.shape[1]):
+                    field[node[e], c] = field[source[e], c]
+                field[node[e], axis] = -field[source[e], axis]
+        elif kind == GRADIENT:
+            for e in range(node.shape[0]):
+                for c in range(field.shape[1]):
+                    field[node[e], c] = field[source[e], c] - value[c]
 
 
 @kernel
