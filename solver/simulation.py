@@ -201,7 +201,15 @@ class Simulation:
         self._inner_nodes = self.grid.inner_nodes()
         self._workspace = Workspace()
         self._owned_nodes = self.grid.owned_nodes()
-        self._owned_cells = self.grid.owned_cells()
+        owned = self.grid.owned_cells()
+        self._space = settle.Space(
+            self.grid.index,
+            self.grid.cells,
+            self.grid.periodic,
+            owned,
+            bool(owned.all()),
+            self.flags.minimum_particle_mass,
+        )
         self._uncounted = ~self.exchange.counted
         self.node_positions = self.grid.node_positions()
         self._weight = self.boundary_conditions.node_to_cell_weight()
@@ -661,16 +669,7 @@ class Simulation:
     def _settle(self, body: Body) -> None:
         count = len(body.particles)
         kept = self._workspace.rows("kept", count, np.bool_)
-        work = partial(
-            settle.settle,
-            body.particles,
-            self.grid.index,
-            self.grid.cells,
-            self.grid.periodic,
-            self._owned_cells,
-            self.flags.minimum_particle_mass,
-            kept,
-        )
+        work = partial(settle.settle, body.particles, self._space, kept)
         if self._in_chunks(count, work)[:, 0].any():
             body.keep(kept)
 

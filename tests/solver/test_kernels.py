@@ -561,7 +561,9 @@ def settled(positions, grid=BOX, owned=EVERYWHERE, least_mass=0.0, **values):
         getattr(particles, name)[:] = value
     kept = np.empty(len(particles), dtype=np.bool_)
     sums = np.empty((1, 1))
-    settle.settle(particles, grid.index, grid.cells, grid.periodic, owned, least_mass, kept, 0, 1, sums)
+    everywhere = bool(owned.all())
+    space = settle.Space(grid.index, grid.cells, grid.periodic, owned, everywhere, least_mass)
+    settle.settle(particles, space, kept, 0, 1, sums)
     lost = sums[0, 0]
     assert lost == np.count_nonzero(~kept)
     return kept, particles
@@ -596,6 +598,16 @@ def test_particles_outside_the_domain_are_removed():
     ]
     kept, _ = settled(inside + outside)
     np.testing.assert_array_equal(kept, [True] * 2 + [False] * 7)
+
+
+def test_eights_inside_stay_as_a_whole():
+    positions = np.random.default_rng(8).uniform((10.0, 0.0, -1.0), (14.0, 3.0, 1.0), (29, 3))
+    assert settled(positions)[0].all()
+    positions[[9, 27], 1] = 3.0
+    localized = np.zeros(29, np.int32)
+    localized[20] = DELETE
+    kept, _ = settled(positions, localized=localized)
+    np.testing.assert_array_equal(np.flatnonzero(~kept), [9, 20, 27])
 
 
 def test_particles_in_cells_of_no_patch_are_removed():
