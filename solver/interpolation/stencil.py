@@ -112,11 +112,12 @@ def any_reach(block: NodeBlock, axis: int, factors: Any) -> bool:
 
 
 class Corner(NamedTuple):
-    """The first node (i, j, k) of a particle, counted in storage, and how many it has in y and z."""
+    """The first node (i, j, k) of a particle, counted in storage, and how many it has in x, y and z."""
 
     i: int
     j: int
     k: int
+    count_x: int
     count_y: int
     count_z: int
 
@@ -128,6 +129,7 @@ def corner(factors: Any, lane: int) -> Corner:
         int(factors[FIRST, lane]),
         int(factors[8 + FIRST, lane]),
         int(factors[16 + FIRST, lane]),
+        int(factors[COUNT, lane]),
         int(factors[8 + COUNT, lane]),
         int(factors[16 + COUNT, lane]),
     )
@@ -146,6 +148,15 @@ def product_is_near(
 
 
 @inline
+def add_to_node(sums: Sums, node: Any, plain: Lanes, mixed: Lanes, by_x: Lanes, wx: float, gx: float) -> None:
+    """Add to a node of a row what the row has in common, times the weight in x."""
+    rows = sums.rows
+    sums.touched[node] = 1
+    put_lanes(rows, node, 0, lanes_at(rows, node, 0) + plain * wx)
+    put_lanes(rows, node, 8, lanes_at(rows, node, 8) + mixed * wx + by_x * gx)
+
+
+@inline
 def scatter_product(
     interpolator: Any,
     grid: GridIndex,
@@ -161,7 +172,7 @@ def scatter_product(
 
     A row is never divided, so blocks have to be slabs across y or z.
     """
-    factors, rows = room.factors, sums.rows
+    factors = room.factors
     at = corner(factors, lane)
     low, high = block.low, block.high
     for c in range(max(0, low[2] - at.k), min(at.count_z, high[2] - at.k)):
@@ -172,11 +183,14 @@ def scatter_product(
             mixed = content.mixed * (wy * wz) + content.by_y * (gy * wz) + content.by_z * (wy * gz)
             by_x = content.by_x * (wy * wz)
             row = np.uint64(at.i + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
-            for a in range(3):
-                node, wx, gx = row + np.uint64(a), factors[W + a, lane], factors[G + a, lane]
-                sums.touched[node] = 1
-                put_lanes(rows, node, 0, lanes_at(rows, node, 0) + plain * wx)
-                put_lanes(rows, node, 8, lanes_at(rows, node, 8) + mixed * wx + by_x * gx)
+            add_to_node(sums, row, plain, mixed, by_x, factors[W, lane], factors[G, lane])
+            add_to_node(
+                sums, row + np.uint64(1), plain, mixed, by_x, factors[W + 1, lane], factors[G + 1, lane]
+            )
+            if at.count_x > 2:
+                add_to_node(
+                    sums, row + np.uint64(2), plain, mixed, by_x, factors[W + 2, lane], factors[G + 2, lane]
+                )
 
 
 @inline
@@ -193,10 +207,14 @@ def gather_product(
             wy, gy = factors[8 + W + b, lane], factors[8 + G + b, lane]
             along, slope = nothing(), nothing()
             row = np.uint64(at.i + grid.nodes[0] * (at.j + b + grid.nodes[1] * (at.k + c)))
-            for a in range(3):
+            for a in range(2):
                 nodal = lanes_at(rows, row + np.uint64(a), 0)
                 along = along + nodal * factors[W + a, lane]
                 slope = slope + nodal * factors[G + a, lane]
+            if at.count_x > 2:
+                nodal = lanes_at(rows, row + np.uint64(2), 0)
+                along = along + nodal * factors[W + 2, lane]
+                slope = slope + nodal * factors[G + 2, lane]
             value = value + along * (wy * wz)
             by_x = by_x + slope * (wy * wz)
             by_y = by_y + along * (gy * wz)
