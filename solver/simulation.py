@@ -45,6 +45,7 @@ from solver.nodal import NodalFields, new_nodal_fields
 from solver.nodal_stress import on_face, project_stress
 from solver.particles import Particles, keep
 from solver.performance.phases import Clock, Phase, no_clock
+from solver.sorting import in_order_of_cells, wants_sorting
 from solver.team import Team, node_blocks
 from solver.workspace import Workspace
 
@@ -110,7 +111,7 @@ class Body:
         return time >= self.activation_time and (self.is_active or self.activation_time > 0.0)
 
     def keep(self, kept: Array) -> None:
-        """Drop the particles that a mask (n,) leaves out."""
+        """Keep the particles that a mask (n,) or indices name, in that order."""
         self.records = tuple(keep(record, kept) for record in self.records)
 
     @property
@@ -252,6 +253,8 @@ class Simulation:
         self.reductions.clear()
         self.clock(Phase.EXCHANGE)
         self.balance()
+        self.clock(Phase.SORT)
+        self._sort()
         self.clock(Phase.LOADS)
         for action in self.before_step:
             action(self, dt)
@@ -343,6 +346,13 @@ class Simulation:
             self.grid = grid
             self.boundary_conditions = self.boundary_conditions.on(grid)
             self._lay_out()
+
+    def _sort(self) -> None:
+        """Bring the particles of a body that has mixed into the order of their cells."""
+        for body in self.bodies:
+            position = body.particles.position
+            if wants_sorting(self.grid, position, self.step_number):
+                body.keep(in_order_of_cells(self.grid, position))
 
     # ---- particles to grid ---------------------------------------------------------------------------------
 

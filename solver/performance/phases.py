@@ -12,6 +12,8 @@ class Phase(StrEnum):
 
     OUTSIDE = "output"
     """Between two steps: archives, histories, checkpoints, progress, and the choice of the next step."""
+    SORT = "sort"
+    """Particles brought into the order of their cells, where they have mixed."""
     LOADS = "loads"
     """External loads on particles, and particles inserted."""
     TO_GRID = "particles to grid"
