@@ -314,7 +314,6 @@ def principal_values(a: Tensor) -> Principal:
     return Principal(first, 3.0 * mean - first - third, third)
 
 
-@inline
 def tensor_at(array: Any, p: int) -> Tensor:
     """The p-th tensor of an array of shape (n, 3, 3)."""
     return Tensor(
@@ -330,7 +329,6 @@ def tensor_at(array: Any, p: int) -> Tensor:
     )
 
 
-@inline
 def put_tensor(array: Any, p: int, a: Tensor) -> None:
     """Store a tensor as the p-th of an array of shape (n, 3, 3)."""
     array[p, 0, 0] = a.xx
