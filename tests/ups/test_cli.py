@@ -14,10 +14,12 @@ import pytest
 from click.testing import CliRunner, Result
 from small_decks import CONTACT, LEFT, RIGHT, deck, material, write
 
+import ups.commands
 from cli import main
 from ups.archive import Archive
 
 CLI = Path(__file__).resolve().parents[2] / "cli.py"
+COMMANDS = CLI.parent / "ups" / "commands"
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(CLI.parent)}
 
 
@@ -263,12 +265,30 @@ def test_an_internal_error_is_one_line(tmp_path: Path, monkeypatch: pytest.Monke
     assert done.stderr.count("\n") == 1
 
 
-def test_help_starts_at_once() -> None:
-    code = "import sys, cli; print([m for m in ('numpy', 'numba', 'lxml', 'rich') if m in sys.modules])"
+def test_help_has_a_line_for_each_command_and_starts_at_once() -> None:
+    heavy = ("numpy", "numba", "lxml", "rich", "pyvista", "ups.deck")
+    code = (
+        "import sys, cli; cli.main(['--help'], standalone_mode=False); "
+        f"print([m for m in {heavy} if m in sys.modules])"
+    )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=ENVIRONMENT
     )
-    assert done.stdout.strip() == "[]"
+    *lines, loaded = done.stdout.splitlines()
+    assert loaded == "[]"
+    listed = [line.split(maxsplit=1) for line in lines[lines.index("Commands:") + 1 :]]
+    assert [name for name, _ in listed] == sorted(file.stem for file in COMMANDS.glob("[a-z]*.py"))
+
+
+def test_a_command_is_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "greet.py").write_text(
+        'import click\n\n@click.command()\ndef greet() -> None:\n    """Say hello."""\n    click.echo("hello")\n'
+    )
+    monkeypatch.setattr(ups.commands, "__path__", [*ups.commands.__path__, str(tmp_path)])
+    assert invoke("greet").stdout == "hello\n"
+    assert "greet      Say hello." in invoke("--help").stdout
+    monkeypatch.undo()
+    assert invoke("greet").exit_code == 2
 
 
 def test_a_deck_of_another_method(tmp_path: Path) -> None:
