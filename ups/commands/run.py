@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from functools import partial
 from typing import TYPE_CHECKING
@@ -78,49 +78,25 @@ def run(
     if step is not None and restart is None:
         raise click.UsageError("--from belongs to --restart")
     ranks = _ranks()
+    first = ranks.rank == 0  # the one that speaks
     with orderly(verbose, ranks):
-        from ups.deck import read_deck
-        from ups.progress import Interrupts, Progress, compilation_notice
-        from ups.session import resume_run, run_deck
+        from ups.progress import Interrupts, compilation_notice
 
-        quiet = quiet or ranks.rank > 0
-        go: Callable[..., Result]
-        if restart is not None:
-            go = partial(resume_run, restart, step=step, overrides=overrides)
-        else:
-            loaded = read_deck(str(deck), overrides=overrides)
-            if loaded.diagnostics.has_errors:
-                loaded.require()  # raises, before anything heavy is imported
-            go = partial(run_deck, loaded)
+        quiet = quiet or not first
+        go = _what_runs(deck, restart, step, overrides)
         interrupts = Interrupts()
-        observers: list[Observer] = [interrupts] if quiet else [interrupts, Progress()]
-        show_warnings = checked = _printer_of_warnings(verbose and not ranks.rank, quiet)
-        if live is not None:
-            from ups.pictures.live import Live, check_variable
-            from ups.pictures.window import has_display
-
-            def checked(deck: Deck) -> None:
-                check_variable(deck, live)
-                show_warnings(deck)
-
-            if ranks.rank == 0:  # which draws what all have written
-                observers.append(Live(live, window=has_display(), stream=None if quiet else sys.stdout))
-        if profile:
-            from ups.profile import Profile
-
-            observers.append(Profile(sys.stdout if ranks.rank == 0 else None))
         with nullcontext() if quiet else compilation_notice():
             result = go(
                 output=output,
                 max_steps=max_steps,
                 threads=threads,
                 ranks_a_file=ranks_per_file,
-                observers=observers,
-                checked=checked,
+                observers=[interrupts, *_watching(live, profile, quiet, first)],
+                checked=_check(live, verbose and first, quiet),
                 communicator=ranks,
             )
         if received := max(ranks.allgather(interrupts.received)):
-            if ranks.rank == 0:
+            if first:
                 click.echo(f"go on with: ups run --restart {result.directory}", err=True)
             sys.exit(128 + received)
 
@@ -136,13 +112,52 @@ def _ranks() -> Communicator:
         sys.exit(FAULT)
 
 
-def _printer_of_warnings(verbose: bool, quiet: bool) -> Callable[[Deck], None]:
-    """A function that prints the warnings of a deck, and its notes where they are wanted."""
+def _what_runs(
+    deck: str | None, restart: str | None, step: int | None, overrides: list[tuple[str, str]]
+) -> Callable[..., Result]:
+    """The call of the library that runs a deck, which has no errors of its own, or goes on from an archive."""
+    if restart is not None:
+        from ups.session import resume_run
+
+        return partial(resume_run, restart, step=step, overrides=overrides)
+    from ups.deck import read_deck
+
+    loaded = read_deck(str(deck), overrides=overrides)
+    if loaded.diagnostics.has_errors:
+        loaded.require()  # raises, before anything heavy is imported
+    from ups.session import run_deck
+
+    return partial(run_deck, loaded)
+
+
+def _watching(live: str | None, profile: bool, quiet: bool, first: bool) -> Iterator[Observer]:
+    """The observers of the run that were asked for, beside that of interrupts."""
+    if not quiet:
+        from ups.progress import Progress
+
+        yield Progress()
+    if live is not None and first:  # which draws what all have written
+        from ups.pictures.live import Live
+        from ups.pictures.window import has_display
+
+        yield Live(live, window=has_display(), stream=None if quiet else sys.stdout)
+    if profile:
+        from ups.profile import Profile
+
+        yield Profile(sys.stdout if first else None)
+
+
+def _check(live: str | None, verbose: bool, quiet: bool) -> Callable[[Deck], None]:
+    """A function that looks whether a deck has the variable to show, and prints its warnings, and notes if wanted."""
     from ups.diagnostics import Severity
 
     shown = {Severity.WARNING, Severity.NOTE} if verbose else set() if quiet else {Severity.WARNING}
 
-    def show(deck: Deck) -> None:
+    def check(deck: Deck) -> None:
+        if live is not None:
+            from ups.pictures.live import check_variable
+
+            check_variable(deck, live)
         print_diagnostics([d for d in deck.diagnostics if d.severity in shown], deck.sources)
 
-    return show
+    return check
