@@ -3,7 +3,9 @@
 Import :func:`kernel` or :func:`kernel_with_scratch` from here to compile a function.
 """
 
+from solver.jit.compile import kernel, kernel_with_scratch  # first, as it imports numba as it should be
+
+# isort: split
 import solver.jit.generics  # noqa: F401 - tells numba what the solver declared
-from solver.jit.compile import kernel, kernel_with_scratch
 
 __all__ = ["kernel", "kernel_with_scratch"]

@@ -8,7 +8,6 @@ from typing import Any
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import lower_builtin, type_callable
-from numba.np.arrayobj import populate_array
 
 from solver import scratch
 
@@ -16,6 +15,8 @@ CACHE_LINE = 64
 
 
 def _array_on_stack(context: Any, builder: Any, array_type: Any, lengths: list[int]) -> Any:
+    from numba.np.arrayobj import populate_array  # here, as kernels that were compiled need none of it
+
     number = context.get_data_type(array_type.dtype)
     size = context.get_abi_sizeof(number)
     room = cgutils.alloca_once(builder, ir.ArrayType(number, math.prod(lengths)))

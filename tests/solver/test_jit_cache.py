@@ -1,0 +1,119 @@
+"""Where compiled kernels are kept, whoever imports numba first, and what is loaded to use them."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from solver.jit import kernel
+
+PROGRAM = """
+import os
+os.environ.pop("NUMBA_CACHE_DIR", None)
+import {first}
+import {second}
+import numba
+from solver.particles import Particles
+from solver.kernels.settle import settle
+settle.enable_caching()
+print(numba.config.CACHE_DIR, settle.stats.cache_path)
+"""
+
+
+@pytest.mark.parametrize(("first", "second"), [("numba", "solver.jit"), ("solver.jit", "numba")])
+def test_kernels_are_cached_by_the_state_of_the_sources_whoever_imports_numba_first(first, second):
+    program = PROGRAM.format(first=first, second=second)
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    folder, kernel_folder = run.stdout.split()
+    assert "ups-mpm" in folder
+    assert kernel_folder.startswith(folder)
+
+
+MODULE = """
+from solver.jit import kernel
+
+@kernel
+def total(record, values):
+    for i in range(len(values)):
+        record.sum[0] += record.factor * values[i]
+"""
+
+CALL = """
+import importlib, json, sys
+import numpy as np
+from total import total
+
+record = importlib.import_module(sys.argv[1]).Law(2.0, np.zeros(1))
+total(record, np.arange(4.0))
+compiler = [name for name in ("numba.np.linalg", "numba.typed.listobject") if name in sys.modules]
+print(json.dumps([record.sum[0], sum(total.stats.cache_hits.values()), bool(compiler)]))
+"""
+
+LAW = """
+from typing import NamedTuple
+import numpy as np
+
+class Law(NamedTuple):
+    factor: float
+    sum: np.ndarray
+"""
+
+
+def test_a_second_process_finds_the_kernels_and_needs_no_compiler(tmp_path: Path) -> None:
+    for name, text in {"total": MODULE, "first": LAW, "second": LAW}.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    path = os.pathsep.join([str(tmp_path), str(Path(__file__).parents[2])])
+    environment = {**os.environ, "PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
+
+    def call(home: str) -> list:
+        command = [sys.executable, "-c", CALL, home]
+        run = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+        return json.loads(run.stdout)
+
+    compiled, found = [12.0, 0, True], [12.0, 1, False]
+    assert call("first") == compiled
+    assert call("second") == compiled  # a namesake of the first class
+    assert call("first") == found
+    assert call("second") == found
+
+
+def test_a_kernel_is_not_called_by_another() -> None:
+    @kernel
+    def inner(x):
+        return 2.0 * x
+
+    @kernel
+    def outer(x):
+        return inner(x) + 1.0
+
+    assert inner(1.0) == 2.0
+    with pytest.raises(TypeError, match="inner is a kernel"):
+        outer(1.0)
+
+
+def test_numba_is_whole_for_others() -> None:
+    program = """
+import solver.jit
+import numba
+from numba.experimental import jitclass
+
+@jitclass([("x", numba.float64)])
+class Point:
+    def __init__(self, x):
+        self.x = x
+
+@numba.njit
+def twice(x):
+    return 2.0 * Point(x).x
+
+assert twice(2.0) == 4.0
+import importlib.metadata
+print(importlib.metadata.version("numba") == numba.__version__, numba.experimental.jitclass is jitclass)
+"""
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert run.stdout.split() == ["True", "True"]
