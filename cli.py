@@ -46,7 +46,7 @@ def _collect_seldom() -> None:
     Nearly all objects are modules and declarations, which live to the end; to look through them as often as Python
     does, and once more when it takes the modules apart, is a third of the time of a short run.
     """
-    gc.set_threshold(100_000)
+    gc.set_threshold(500_000)
     atexit.register(gc.freeze)
 
 

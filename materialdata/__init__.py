@@ -7,9 +7,9 @@ Files have the names that Uintah's decks give them today; ``names.toml`` lists o
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 ROOT = Path(__file__).resolve().parent
 """The folder of the include files."""
@@ -38,8 +38,7 @@ def find(href: str, root: Path = ROOT) -> Path | None:
 @cache
 def sources() -> dict[str, str]:
     """The publications by the names that comments give them."""
-    with (ROOT / "sources.toml").open("rb") as file:
-        return tomllib.load(file)
+    return _table("sources.toml")
 
 
 @cache
@@ -51,12 +50,17 @@ def _by_name(root: Path) -> dict[str, Path]:
 @cache
 def _words() -> dict[str, dict[str, str]]:
     """Kind of word -> word, old or new -> word of today."""
-    with (ROOT / "names.toml").open("rb") as file:
-        kinds = tomllib.load(file)
     return {
         kind: {word: today for today, others in words.items() for word in (today, *others)}
-        for kind, words in kinds.items()
+        for kind, words in _table("names.toml").items()
     }
+
+
+def _table(name: str) -> dict[str, Any]:
+    import tomllib  # here, as most decks name their includes by today's words
+
+    with (ROOT / name).open("rb") as file:
+        return tomllib.load(file)
 
 
 def _today(stem: str) -> str:

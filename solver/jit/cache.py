@@ -20,11 +20,12 @@ from typing import Any
 
 def _folder() -> Path:
     base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ups-mpm"
-    root = Path(__file__).parent.parent
+    root = os.path.dirname(os.path.dirname(__file__))
     stamp = hashlib.sha256()
-    for file in sorted(root.rglob("*.py")):
-        status = file.stat()
-        stamp.update(f"{file.relative_to(root)} {status.st_mtime_ns} {status.st_size}\n".encode())
+    for folder, _, files in sorted(os.walk(root)):
+        for file in sorted(file for file in files if file.endswith(".py")):
+            status = os.stat(os.path.join(folder, file))
+            stamp.update(f"{folder[len(root) :]}/{file} {status.st_mtime_ns} {status.st_size}\n".encode())
     return base / stamp.hexdigest()[:16]
 
 

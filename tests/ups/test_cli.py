@@ -280,6 +280,25 @@ def test_help_has_a_line_for_each_command_and_starts_at_once() -> None:
     assert [name for name, _ in listed] == sorted(file.stem for file in COMMANDS.glob("[a-z]*.py"))
 
 
+def test_a_run_loads_kernels_and_no_compiler(tmp_path: Path) -> None:
+    compiler = ("numba.np.linalg", "numba.typed.listobject", "numba.experimental.jitclass")
+    unused = ("scipy", "yaml", "tomllib", "mpi4py", "rich", "pyvista", "solver.contact.logistic_regression")
+    code = (
+        "import sys, cli; cli.main(sys.argv[1:], standalone_mode=False); "
+        f"print([m for m in {(*compiler, *unused)} if m in sys.modules])"
+    )
+    for archive in ("a", "b"):  # the first may compile
+        command = [sys.executable, "-c", code, "run", str(write(tmp_path)), "--max-steps", "2", "-q"]
+        done = subprocess.run(
+            [*command, "--output", str(tmp_path / archive)],
+            capture_output=True,
+            text=True,
+            check=True,
+            env=ENVIRONMENT,
+        )
+    assert done.stdout.strip() == "[]"
+
+
 def test_a_command_is_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "greet.py").write_text(
         'import click\n\n@click.command()\ndef greet() -> None:\n    """Say hello."""\n    click.echo("hello")\n'

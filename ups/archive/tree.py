@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -249,6 +248,8 @@ def _write_xml(path: Path, lines: Sequence[str], entries: Sequence[Entry] = ()) 
 
 def _write_state(path: Path, state: Mapping[str, npt.ArrayLike]) -> None:
     """Write arrays by name into a file that `numpy.load` reads."""
+    import zipfile  # here, as only checkpoints are in this form
+
     with zipfile.ZipFile(path, "w") as archive:
         for name, value in state.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
