@@ -16,9 +16,10 @@ from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functi
 from solver.jit import kernel_with_scratch
 from solver.particles import Particles
 from solver.tensor import tensor_at
+from solver.workspace import Workspace
 
 if TYPE_CHECKING:
-    from solver.simulation import Body, Simulation
+    from solver.simulation import Simulation
 
 Array = NDArray[Any]
 
@@ -38,6 +39,7 @@ class NodalStress:
     def __init__(self) -> None:
         self.wanted = False
         self.values: Array = np.zeros((0, 0, 3, 3))
+        self._workspace = Workspace()
 
     def attach(self, simulation: Simulation) -> None:
         """Record from now on."""
@@ -45,10 +47,7 @@ class NodalStress:
 
     def _record(self, simulation: Simulation, dt: float) -> None:
         if self.wanted:
-            count = simulation.grid.number_of_nodes
-            self.values = np.zeros((len(simulation.bodies), count, 3, 3))
-            for m in range(len(simulation.bodies)):
-                self.values[m] = simulation.stress_at_nodes(m)
+            self.values = stress_of_all(simulation, self._workspace)
 
 
 class FaceTractions:
@@ -61,25 +60,26 @@ class FaceTractions:
 
     def __init__(self, faces: tuple[str, ...]) -> None:
         self.faces = faces
+        self._workspace = Workspace()
 
     def attach(self, simulation: Simulation) -> None:
         """Record from now on."""
         simulation.after_boundary_conditions.append(self._record)
 
     def _record(self, simulation: Simulation, dt: float) -> None:
-        stresses = [simulation.stress_at_nodes(m) for m in range(len(simulation.bodies))]
+        stresses = stress_of_all(simulation, self._workspace)
         for name in self.faces:
             self._record_face(simulation, name, stresses)
 
-    def _record_face(self, simulation: Simulation, name: str, stresses: list[Array]) -> None:
-        face = name.replace("minus", "-").replace("plus", "+")
+    def _record_face(self, simulation: Simulation, name: str, stresses: Array) -> None:
+        face = side_of(name)
         axis, outward = FACES.index(face) // 2, 1.0 if face.endswith("+") else -1.0
         grid, reductions = simulation.grid, simulation.reductions
-        nodes = np.flatnonzero(on_face(grid, face) & simulation.exchange.counted)
+        nodes = simulation.face_nodes[name]
         traction = np.zeros(3)
         for m, stress in enumerate(stresses):
             node_area = 2.0 * simulation.nodal.volume[m, nodes] / grid.spacing[axis]
-            normal_stress = outward * stress[nodes][..., axis]
+            normal_stress = outward * stress[nodes, :, axis]
             traction += (normal_stress * node_area[..., None]).sum(axis=0)
         area = reductions["BndyContactCellArea_" + name, -1]
         force = reductions["BndyForce_" + name, -1]
@@ -96,6 +96,20 @@ class FaceTractions:
         reductions["BndyContactArea_" + name, -1] = area if first else 0.0
 
 
+def stress_of_all(simulation: Simulation, workspace: Workspace) -> Array:
+    """(M, N, 3, 3) stress of all materials at the nodes, in arrays of the workspace."""
+    materials, nodes = len(simulation.bodies), simulation.grid.number_of_nodes
+    stress = workspace.rows("stress", materials, np.float64, nodes, 3, 3)
+    for m in range(materials):
+        simulation.stress_at_nodes(m, stress[m])
+    return stress
+
+
+def side_of(name: str) -> str:
+    """The face that ``boundary_traction_faces`` calls ``xminus``, as grids call it: ``x-``."""
+    return name.replace("minus", "-").replace("plus", "+")
+
+
 def on_face(grid: Grid, face: str) -> Array:
     """(N,) True for the nodes on a face of the bounding box, extra nodes left out."""
     axis = FACES.index(face) // 2
@@ -106,13 +120,6 @@ def on_face(grid: Grid, face: str) -> Array:
         inside.append(indices == at if a == axis else (indices >= 0) & (indices <= grid.cells[a]))
     x, y, z = inside
     return np.asarray(z[:, None, None] & y[:, None] & x).ravel()
-
-
-def project_stress(simulation: Simulation, body: Body) -> Array:
-    """The sum over particles V_p sigma_p S_ip at the nodes: (N, 9)."""
-    sums = np.zeros((simulation.grid.number_of_nodes, 9))
-    scatter_stress(simulation.interpolator, simulation.grid.index, body.particles, sums)
-    return sums
 
 
 @kernel_with_scratch

@@ -42,7 +42,7 @@ from solver.materials.constitutive import (
 )
 from solver.materials.failure import Failure
 from solver.nodal import NodalFields, new_nodal_fields
-from solver.nodal_stress import on_face, project_stress
+from solver.nodal_stress import on_face, scatter_stress, side_of
 from solver.particles import Particles, keep
 from solver.performance.phases import Clock, Phase, no_clock
 from solver.sorting import in_order_of_cells, wants_sorting
@@ -212,6 +212,10 @@ class Simulation:
             self.flags.minimum_particle_mass,
         )
         self._uncounted = ~self.exchange.counted
+        self.face_nodes = {
+            name: np.flatnonzero(on_face(self.grid, side_of(name)) & self.exchange.counted)
+            for name in self.flags.boundary_traction_faces
+        }
         self.node_positions = self.grid.node_positions()
         self._weight = self.boundary_conditions.node_to_cell_weight()
         low, high = self.grid.own_cells
@@ -489,19 +493,24 @@ class Simulation:
             dt=dt,
             time=self.time,
             face_forces=dict(self.face_forces),
+            node_positions=self.node_positions,
+            workspace=self._workspace,
         )
 
-    def stress_at_nodes(self, m: int) -> Array:
-        """The stress of a body at the nodes, sum_p V_p sigma_p S_ip / V_i, (N, 3, 3); zero for a rigid body.
+    def stress_at_nodes(self, m: int, stress: Array) -> None:
+        """Enter the stress of a body at the nodes, sum_p V_p sigma_p S_ip / V_i, (N, 3, 3); zero for a rigid body.
 
         To be called before particles move, as ``after_boundary_conditions`` are.
         """
         body = self.bodies[m]
+        stress[:] = 0.0
         if body.rigid or not body.takes_part(self.time):
-            return np.zeros((self.grid.number_of_nodes, 3, 3))
-        sums = project_stress(self, body)
+            return
+        sums = stress.reshape(-1, 9)
+        scatter_stress(self.interpolator, self.grid.index, body.particles, sums)
         self.exchange.add(sums)()
-        return (sums / self.nodal.volume[m][:, None]).reshape(-1, 3, 3)
+        for component in sums.T:
+            component /= self.nodal.volume[m]
 
     # ---- on the grid ---------------------------------------------------------------------------------------
 
@@ -633,13 +642,15 @@ class Simulation:
         if not is_coupled(body.model):
             return None
         grid = self.grid
+        position = self._workspace.rows("position before", len(body.particles), np.float64, 3)
+        position[:] = body.particles.position
         repeats = [
             n if p and grid.window is None else 0 for n, p in zip(grid.cells, grid.periodic, strict=True)
         ]
         return Neighbourhood(
             interpolator=self.interpolator,
             grid=grid.index,
-            position=body.particles.position.copy(),
+            position=position,
             dt=dt,
             repeats=(repeats[0], repeats[1], repeats[2]),
             complete=lambda sums: self.exchange.add(sums)(),
@@ -664,17 +675,20 @@ class Simulation:
         """Cells of the particles at the start of the step, x fastest in this rank's, where pressure is stabilized."""
         if not self.flags.pressure_stabilization:
             return np.zeros(0, dtype=np.int64)
-        low, high = (np.array(corner) for corner in self.grid.own_cells)
-        cell = self.grid.cell_of(body.particles.position) - low
-        nx, ny, _ = high - low
-        return np.asarray(cell[:, 0] + nx * (cell[:, 1] + ny * cell[:, 2]))
+        cells = self._workspace.rows("cells of particles", len(body.particles), np.int64)
+        stress.particle_cells(
+            body.particles.position, self.grid.anchor, self.grid.spacing, self.grid.own_cells, cells
+        )
+        return cells
 
     def _average_dilatation(self, body: Body, cells: Array, dt: float) -> None:
         """The volume change of each cell as a whole, for pressure stabilization."""
-        volume = np.zeros_like(self._cell_stretch)
-        reference = np.zeros_like(self._cell_stretch)
+        count = len(self._cell_stretch)
+        volume = self._workspace.rows("volume in cells", count, np.float64)
+        reference = self._workspace.rows("reference volume in cells", count, np.float64)
         stress.cell_dilatation(body.particles, cells, self._kinematics, dt, volume, reference)
-        np.divide(volume, reference, out=self._cell_stretch, where=reference > 0.0)
+        filled = np.greater(reference, 0.0, out=self._workspace.rows("filled cells", count, np.bool_))
+        np.divide(volume, reference, out=self._cell_stretch, where=filled)
 
     def _settle(self, body: Body) -> None:
         count = len(body.particles)
@@ -693,13 +707,12 @@ class Simulation:
     def _record_traction(self) -> None:
         """Force, traction and contact area on the faces that the deck names, before symmetry is imposed."""
         for name in self.flags.boundary_traction_faces:
-            face = name.replace("minus", "-").replace("plus", "+")
             force, volume = np.zeros(3), 0.0
-            chosen = np.flatnonzero(on_face(self.grid, face) & self.exchange.counted)
+            chosen = self.face_nodes[name]
             for m, body in enumerate(self.bodies):
                 if not body.rigid and body.takes_part(self.time):
                     force -= self.nodal.internal_force[m][chosen].sum(axis=0)
                 volume += float(self.nodal.volume[m][chosen].sum())
             self.reductions["BndyForce_" + name, -1] = force
-            axis = FACES.index(face) // 2
+            axis = FACES.index(side_of(name)) // 2
             self.reductions["BndyContactCellArea_" + name, -1] = 2.0 * volume / self.grid.spacing[axis]

@@ -9,7 +9,7 @@ from numpy.typing import DTypeLike, NDArray
 
 
 class Workspace:
-    """Arrays by name, as long as they were ever asked for."""
+    """Arrays by name, as long as they were ever asked for; each user has names of its own."""
 
     def __init__(self) -> None:
         self._arrays: dict[str, NDArray[Any]] = {}
@@ -17,6 +17,12 @@ class Workspace:
     def rows(self, name: str, count: int, dtype: DTypeLike, *width: int) -> NDArray[Any]:
         """An array (count, ..width) with anything in it; the same memory at every call with that name."""
         array = self._arrays.get(name)
-        if array is None or len(array) < count:
+        if array is None or len(array) < count or array.shape[1:] != width:
             array = self._arrays[name] = np.empty((count, *width), dtype)
         return array[:count]
+
+    def zeros(self, name: str, count: int, dtype: DTypeLike, *width: int) -> NDArray[Any]:
+        """The same, with zeros in it."""
+        array = self.rows(name, count, dtype, *width)
+        array[:] = 0
+        return array

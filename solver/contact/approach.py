@@ -5,9 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
-
-from solver.contact.coulomb import centre_of_mass, friction_change, limited, shares_node
+from solver.contact.coulomb import (
+    Filling,
+    centre_of_mass,
+    filling,
+    friction_change,
+    least_volume,
+    limited,
+    shares_node,
+)
 from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactLaw, ContactScene, same
 from solver.contact.normals import surface_fields
@@ -36,9 +42,9 @@ class ApproachContact(ContactLaw):
             scene.nodal.volume,
             scene.once(surface_fields).normal,
             scene.listed(self.materials),
-            np.flatnonzero(scene.owned_nodes),
+            scene.owned_nodes,
             self.mu,
-            self.volume_constraint * scene.cell_volume / (8.0 * scene.node_to_cell_weight),
+            filling(scene, self.volume_constraint, per_radian=False),
             scene.grid.spacing,
             scene.dt,
         )
@@ -51,16 +57,18 @@ def apply_approach(
     volume: Array,
     normals: Array,
     listed: Array,
-    nodes: Array,
+    owned: Array,
     mu: float,
-    least_volume: Array,
+    needed: Filling,
     spacing: Vector,
     dt: float,
 ) -> None:
-    """Friction of approaching materials at each node that they fill beyond ``least_volume`` (N,)."""
-    for n in nodes:
+    """Friction of approaching materials at each owned node (N,) that they fill as needed."""
+    for n in range(owned.shape[0]):
+        if not owned[n]:
+            continue
         centre = centre_of_mass(velocity, mass, volume, listed, n)
-        if same(centre.mass, 0.0) or not centre.volume > least_volume[n]:
+        if same(centre.mass, 0.0) or not centre.volume > least_volume(needed, n):
             continue
         common = over(centre.momentum, centre.mass)
         for m in listed:

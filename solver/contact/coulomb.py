@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from solver.contact.law import Array, same
+from solver.contact.law import Array, ContactScene, same
 from solver.contact.vectors import dot, length, minus, over, plus, times, vector_at
 from solver.declare import Vector
 from solver.dispatch import inline
@@ -20,6 +20,43 @@ class CentreOfMass(NamedTuple):
     mass: float
     momentum: Vector
     volume: float
+
+
+class Filling(NamedTuple):
+    """How far the materials have to fill a node for a law to act there."""
+
+    share: float
+    """Of the cell volume at the node."""
+    cell_volume: float
+    per_radian: bool
+    """Whether the cell volume is min(r, dx/2) dx dy, as in Uintah with axial symmetry."""
+    spacing: Vector
+    positions: Array
+    """(N, 3) of the nodes."""
+    node_to_cell_weight: Array
+    """(N,) 1/8, more on faces of symmetry, where the node has less of a cell."""
+
+
+def filling(scene: ContactScene, share: float, per_radian: bool) -> Filling:
+    """The filling of a scene's nodes that a share of their cells makes."""
+    return Filling(
+        share,
+        scene.cell_volume,
+        per_radian,
+        scene.grid.spacing,
+        scene.node_positions,
+        scene.node_to_cell_weight,
+    )
+
+
+@inline
+def least_volume(needed: Filling, n: int) -> float:
+    """The volume of the materials above which a law acts at a node."""
+    volume = needed.cell_volume
+    if needed.per_radian:
+        dx, dy, _ = needed.spacing
+        volume = min(needed.positions[n, 0], 0.5 * dx) * dx * dy
+    return needed.share * volume / (8.0 * needed.node_to_cell_weight[n])
 
 
 @inline

@@ -7,7 +7,15 @@ from typing import Annotated
 
 import numpy as np
 
-from solver.contact.coulomb import centre_of_mass, friction_change, limited, shares_node
+from solver.contact.coulomb import (
+    Filling,
+    centre_of_mass,
+    filling,
+    friction_change,
+    least_volume,
+    limited,
+    shares_node,
+)
 from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactLaw, ContactScene, same
 from solver.contact.normals import SurfaceFields, shared_nodes, surface_fields
@@ -44,28 +52,20 @@ class FrictionBard(ContactLaw):
         """Stop approach and slip, within Coulomb's limit."""
         if part == 1 and self.OneOrTwoStep != 2:
             return
-        shared = scene.once(shared_nodes)
         apply_friction(
             scene.velocity(part),
             scene.nodal.mass,
             scene.nodal.volume,
             scene.once(surface_fields),
             scene.listed(self.materials),
-            shared[scene.owned_nodes[shared]],
+            scene.once(shared_nodes),
+            scene.owned_nodes,
             self.mu,
-            self.volume_constraint * node_cell_volumes(scene) / (8.0 * scene.node_to_cell_weight),
+            filling(scene, self.volume_constraint, per_radian=scene.axisymmetric),
             self.separation_factor * np.cbrt(scene.cell_volume),
             scene.grid.spacing,
             scene.dt,
         )
-
-
-def node_cell_volumes(scene: ContactScene) -> Array:
-    """(N,) cell volume at each node; with axial symmetry, per radian, min(r, dx/2) dx dy as in Uintah."""
-    if not scene.axisymmetric:
-        return np.full(scene.owned_nodes.shape, scene.cell_volume)
-    dx, dy, _ = scene.grid.spacing
-    return np.minimum(scene.node_positions[:, 0], 0.5 * dx) * dx * dy
 
 
 @deferred_kernel
@@ -76,19 +76,22 @@ def apply_friction(
     surface: SurfaceFields,
     listed: Array,
     nodes: Array,
+    owned: Array,
     mu: float,
-    least_volume: Array,
+    needed: Filling,
     separation: float,
     spacing: Vector,
     dt: float,
 ) -> None:
-    """Friction at each node that the materials fill beyond ``least_volume`` (N,).
+    """Friction at those of the nodes that are owned (N,) and filled as needed.
 
     A material stays as it is where its mean position is ``separation`` or more from that of the others.
     """
     for n in nodes:
+        if not owned[n]:
+            continue
         centre = centre_of_mass(velocity, mass, volume, listed, n)
-        if same(centre.mass, 0.0) or not centre.volume > least_volume[n]:
+        if same(centre.mass, 0.0) or not centre.volume > least_volume(needed, n):
             continue
         common = over(centre.momentum, centre.mass)
         moment = (0.0, 0.0, 0.0)

@@ -6,16 +6,14 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-
 from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactLaw, ContactScene
 from solver.contact.logistic_regression import (
     LEAST_MASS,
-    NO_ALPHA,
     TouchingSurfaces,
     overlaps,
     slide,
+    touching_nodes,
     touching_surfaces,
 )
 from solver.contact.vectors import dot, minus, over, plus, put_vector, times, vector_at
@@ -39,7 +37,7 @@ class LogisticRegressionFriction(ContactLaw):
         if part == 1 and self.OneOrTwoStep != 2:
             return
         surfaces = scene.once(touching_surfaces)
-        nodes = np.flatnonzero(surfaces.alpha != NO_ALPHA)
+        nodes = scene.once(touching_nodes)
         slide_apart(
             scene.velocity(part),
             scene.nodal.mass,
@@ -67,7 +65,9 @@ class FrictionLR(LogisticRegressionFriction):
 
     def friction_coefficients(self, scene: ContactScene, nodes: Array) -> Array:
         """The same everywhere."""
-        return np.full(len(nodes), self.mu)
+        mu = scene.workspace.rows("friction coefficients", len(nodes), float)
+        mu[:] = self.mu
+        return mu
 
 
 @deferred_kernel

@@ -62,25 +62,33 @@ class FrictionLRVar(LogisticRegressionFriction):
 
     def friction_coefficients(self, scene: ContactScene, nodes: Array) -> Array:
         """The table's coefficients at the nodal colours of the master."""
-        color = np.zeros(scene.nodal.mass.shape[1])
+        color = scene.workspace.zeros("color at nodes", len(scene.owned_nodes), float)
         particles = scene.particles[self.master_material]
         shapes = particle_shapes(scene, self.master_material)
-        add_scalar(shapes, particles.color * particles.mass, color)
+        add_weighted(shapes, particles.color, particles.mass, color)
         scene.exchange.add(color)()
+        mean = scene.workspace.rows("mean color", len(nodes), float)
+        divide_at(nodes, color, scene.nodal.mass[self.master_material], mean)
         table = np.array(self.variable_friction.entry)
-        return np.interp(
-            color[nodes] / scene.nodal.mass[self.master_material, nodes], table[:, 0], table[:, 1]
-        )
+        return np.interp(mean, table[:, 0], table[:, 1])
 
 
 @deferred_kernel
-def add_scalar(shapes: ParticleShapes, values: Array, nodal: Array) -> None:
-    """Sum S times a value per particle (n,) at the nodes (N,)."""
+def divide_at(nodes: Array, sums: Array, mass: Array, means: Array) -> None:
+    """Enter for each of the k nodes the sum there over the mass there (N,)."""
+    for i in range(nodes.shape[0]):
+        means[i] = sums[nodes[i]] / mass[nodes[i]]
+
+
+@deferred_kernel
+def add_weighted(shapes: ParticleShapes, values: Array, mass: Array, nodal: Array) -> None:
+    """Sum S times mass times a value per particle (n,) at the nodes (N,)."""
     nodes, weights, gradients = (
         np.empty(MOST_NODES, np.int64),
         np.empty(MOST_NODES),
         np.empty((MOST_NODES, 3)),
     )
     for p in range(values.shape[0]):
+        weighted = values[p] * mass[p]
         for k in range(shape_of(shapes, p, nodes, weights, gradients)):
-            nodal[shapes.images.node[nodes[k]]] += values[p] * weights[k]
+            nodal[shapes.images.node[nodes[k]]] += weighted * weights[k]

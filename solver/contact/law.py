@@ -17,6 +17,7 @@ from solver.domains.exchange import Exchange, OneRank
 from solver.grid import Grid
 from solver.nodal import NodalFields
 from solver.particles import Particles
+from solver.workspace import Workspace
 
 Array = NDArray[Any]
 Shared = TypeVar("Shared")
@@ -73,12 +74,18 @@ class ContactScene:
     """Force on each face (``xminus``, ...) in the step before, where the deck asks for boundary tractions."""
     reductions: dict[tuple[str, int], Any] = field(default_factory=dict)
     """(label, material or -1) -> value (3,) for .dat files, e.g. RigidReactionForce; laws add to them."""
+    node_positions: Array = None  # type: ignore[assignment]  # made from the grid where it is not given
+    """(N, 3)"""
+    workspace: Workspace = field(default_factory=Workspace)
+    """Arrays of nodes and particles that laws fill anew in each step."""
     _shared: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Without other ranks only periodic images have to be heeded."""
         if self.exchange is None:
             self.exchange = OneRank(self.grid)
+        if self.node_positions is None:
+            self.node_positions = self.grid.node_positions()
 
     def velocity(self, part: int) -> Array:
         """The (M, N, 3) velocities that a law changes in part 1 or 2."""
@@ -95,10 +102,9 @@ class ContactScene:
         """Volume of a cell."""
         return self.grid.cell_volume
 
-    @cached_property
-    def node_positions(self) -> Array:
-        """(N, 3) positions of the nodes."""
-        return self.grid.node_positions()
+    def list_of_nodes(self, name: str) -> Array:
+        """(N,) integers of the workspace, for the indices of nodes that a kernel chooses."""
+        return self.workspace.rows(name, len(self.owned_nodes), np.int64)
 
     def listed(self, materials: tuple[int, ...]) -> Array:
         """The indices a law acts on, ascending, as an integer array: all of them for an empty list."""

@@ -65,26 +65,38 @@ class Neighbours(NamedTuple):
 
 def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
     """Alpha materials, normals and prominences of a scene; use it with ``scene.once``."""
+    workspace, (materials, count) = scene.workspace, scene.nodal.mass.shape
     alpha = alpha_materials(scene)
     bodies = [_with_neighbours(scene, particles) for particles in scene.particles]
     shapes = [shapes_of(scene, body) for body in bodies]
-    counts = np.zeros(scene.nodal.mass.shape, np.int64)
-    near = [count_neighbours(shape, alpha, counts[m]) for m, shape in enumerate(shapes)]
-    alpha[np.count_nonzero(counts, axis=0) < 2] = NO_ALPHA
-
-    neighbours = _neighbours(alpha, counts, shapes, near)
-    normal = np.zeros((len(alpha), 3))
-    separate(np.flatnonzero(alpha != NO_ALPHA), neighbours, PENALTY * scene.grid.spacing[0] ** 2, normal)
-    scene.boundary_conditions.apply_symmetry(normal, 0)
-    normal /= np.linalg.norm(normal, axis=1)[:, None] + TINY
-    normal[alpha == NO_ALPHA] = 0.0
-
-    surfaces = TouchingSurfaces(alpha, normal, np.full(counts.shape, -np.inf))
+    counts = workspace.zeros("counts of neighbours", materials, np.int64, count)
+    latest = scene.list_of_nodes("latest particle at nodes")
+    near = []
     for m, shape in enumerate(shapes):
-        prominent = near[m] & (bodies[m].surface > ON_SURFACE)
-        reach(shape, np.flatnonzero(prominent), scene.grid.spacing, m, surfaces)
+        near.append(workspace.rows(f"near touching {m}", len(shape.position), np.bool_))
+        count_neighbours(shape, alpha, latest, counts[m], near[m])
+    nodes = scene.list_of_nodes("nodes with neighbours")
+    nodes = nodes[: list_touching(counts, alpha, nodes)]
+
+    neighbours = _neighbours(scene, alpha, counts, shapes, near)
+    normal = workspace.zeros("separating normals", count, float, 3)
+    separate(nodes, neighbours, PENALTY * scene.grid.spacing[0] ** 2, normal)
+    scene.boundary_conditions.apply_symmetry(normal, 0)
+    _make_unit(scene, normal, alpha)
+
+    prominence = workspace.rows("prominence", materials, float, count)
+    prominence[:] = -np.inf
+    surfaces = TouchingSurfaces(alpha, normal, prominence)
+    for m, shape in enumerate(shapes):
+        reach(shape, near[m], bodies[m].surface, scene.grid.spacing, m, surfaces)
     _share(scene, surfaces)
     return surfaces
+
+
+def touching_nodes(scene: ContactScene) -> Array:
+    """The nodes where bodies touch, in order; use it with ``scene.once``."""
+    nodes = scene.list_of_nodes("touching nodes")
+    return nodes[: list_chosen(scene.once(touching_surfaces).alpha, nodes)]
 
 
 class _Seen(NamedTuple):
@@ -105,7 +117,8 @@ def _with_neighbours(scene: ContactScene, particles: Particles) -> _Seen:
 
 def _share(scene: ContactScene, surfaces: TouchingSurfaces) -> None:
     """Give all copies of a node what the rank found that counts it, and so saw all particles there."""
-    alpha = surfaces.alpha.astype(float)
+    alpha = scene.workspace.rows("alpha shared", len(surfaces.alpha), float)
+    alpha[:] = surfaces.alpha
     scene.exchange.share(alpha)
     surfaces.alpha[:] = alpha
     scene.exchange.share(surfaces.normal)
@@ -115,37 +128,123 @@ def _share(scene: ContactScene, surfaces: TouchingSurfaces) -> None:
 
 def alpha_materials(scene: ContactScene) -> Array:
     """(N,) at the patches' nodes that several materials share, a rigid one, else that of most mass."""
-    mass = scene.nodal.mass
-    possible = np.array(scene.possible_alpha, bool)[:, None]
-    present = possible & (mass > LEAST_SHARE * (EMPTY_MASS + mass.sum(axis=0))) & (mass > LEAST_MASS)
-    alpha = np.argmax(np.where(present, mass, 0.0), axis=0)
-    rigid = possible & np.array(scene.rigid, bool)[:, None] & (mass > LEAST_RIGID_MASS)
-    alpha = np.where(rigid.any(axis=0), np.argmax(np.where(rigid, mass, 0.0), axis=0), alpha)
-    shared = scene.owned_nodes & (np.count_nonzero(present, axis=0) >= 2)
-    return np.where(shared, alpha, NO_ALPHA)
+    alpha = scene.list_of_nodes("alpha materials")
+    possible, rigid = np.array(scene.possible_alpha, bool), np.array(scene.rigid, bool)
+    choose_alpha(scene.nodal.mass, possible, rigid, scene.owned_nodes, alpha)
+    return alpha
 
 
-def _neighbours(alpha: Array, counts: Array, shapes: list[ParticleShapes], near: list[Array]) -> Neighbours:
-    at_node = np.where(alpha == NO_ALPHA, 0, counts.sum(axis=0))
-    start = np.concatenate([[0], np.cumsum(at_node)])
-    neighbours = Neighbours(start, np.empty((start[-1], 3)), np.empty(start[-1]))
-    following = start[:-1].copy()
+@deferred_kernel
+def choose_alpha(mass: Array, possible: Array, rigid: Array, owned: Array, alpha: Array) -> None:
+    """Enter the alpha material of each node (N,), or NO_ALPHA."""
+    for n in range(owned.shape[0]):
+        alpha[n] = NO_ALPHA
+        total = 0.0
+        for m in range(mass.shape[0]):
+            total += mass[m, n]
+        least = max(LEAST_SHARE * (EMPTY_MASS + total), LEAST_MASS)
+        present, most, most_rigid = 0, 0.0, 0.0
+        heaviest = heaviest_rigid = NO_ALPHA
+        for m in range(mass.shape[0]):
+            own = mass[m, n]
+            if possible[m] and own > least:
+                present += 1
+                if own > most:
+                    most, heaviest = own, m
+            if possible[m] and rigid[m] and own > LEAST_RIGID_MASS and own > most_rigid:
+                most_rigid, heaviest_rigid = own, m
+        if owned[n] and present >= 2:
+            alpha[n] = heaviest if heaviest_rigid == NO_ALPHA else heaviest_rigid
+
+
+@deferred_kernel
+def list_touching(counts: Array, alpha: Array, listed: Array) -> int:
+    """List the nodes where particles of two materials are; others get NO_ALPHA. Returns how many they are."""
+    count = 0
+    for n in range(alpha.shape[0]):
+        bodies = 0
+        for m in range(counts.shape[0]):
+            if counts[m, n] > 0:
+                bodies += 1
+        if bodies < 2:
+            alpha[n] = NO_ALPHA
+        if alpha[n] != NO_ALPHA:
+            listed[count] = n
+            count += 1
+    return count
+
+
+@deferred_kernel
+def list_chosen(alpha: Array, listed: Array) -> int:
+    """List the nodes that have an alpha material; returns how many they are."""
+    count = 0
+    for n in range(alpha.shape[0]):
+        if alpha[n] != NO_ALPHA:
+            listed[count] = n
+            count += 1
+    return count
+
+
+def _neighbours(
+    scene: ContactScene, alpha: Array, counts: Array, shapes: list[ParticleShapes], near: list[Array]
+) -> Neighbours:
+    start = scene.workspace.rows("first neighbours", len(alpha) + 1, np.int64)
+    following = scene.list_of_nodes("following neighbours")
+    total = lay_out_lists(alpha, counts, start, following)
+    neighbours = Neighbours(
+        start,
+        scene.workspace.rows("positions of neighbours", total, float, 3),
+        scene.workspace.rows("sides of neighbours", total, float),
+    )
+    latest = scene.list_of_nodes("latest particle at nodes")
     for m, shape in enumerate(shapes):
-        list_neighbours(shape, np.flatnonzero(near[m]), m, alpha, following, neighbours)
+        list_neighbours(shape, near[m], m, alpha, latest, following, neighbours)
     return neighbours
 
 
 @deferred_kernel
-def count_neighbours(shapes: ParticleShapes, alpha: Array, counts: Array) -> Array:
-    """Count the particles at each shared node (N,); returns (n,) which particles touch such a node."""
+def lay_out_lists(alpha: Array, counts: Array, start: Array, following: Array) -> int:
+    """Enter where the lists of the nodes begin (N + 1,) and go on (N,); returns how long they are together."""
+    total = 0
+    for n in range(alpha.shape[0]):
+        start[n] = following[n] = total
+        if alpha[n] != NO_ALPHA:
+            for m in range(counts.shape[0]):
+                total += counts[m, n]
+    start[alpha.shape[0]] = total
+    return total
+
+
+def _make_unit(scene: ContactScene, normal: Array, alpha: Array) -> None:
+    """Make the normals (N, 3) unit vectors, and zero where there is no alpha material."""
+    squares = scene.workspace.rows("squares of normals", len(normal), float, 3)
+    sizes = scene.workspace.rows("sizes of normals", len(normal), float)
+    np.add.reduce(np.multiply(normal, normal, out=squares), axis=1, out=sizes)
+    divide_normals(normal, np.sqrt(sizes, out=sizes), alpha)
+
+
+@deferred_kernel
+def divide_normals(normal: Array, sizes: Array, alpha: Array) -> None:
+    """Divide the normals (N, 3) by their sizes (N,); they are zero where there is no alpha material."""
+    for n in range(alpha.shape[0]):
+        unit = over(vector_at(normal, n), sizes[n] + TINY)
+        put_vector(normal, n, unit if alpha[n] != NO_ALPHA else (0.0, 0.0, 0.0))
+
+
+@deferred_kernel
+def count_neighbours(shapes: ParticleShapes, alpha: Array, latest: Array, counts: Array, near: Array) -> None:
+    """Count the particles at each shared node (N,), and enter which particles (n,) touch such a node.
+
+    ``latest`` (N,) is overwritten.
+    """
+    latest[:] = -1
     nodes, weights, gradients = (
         np.empty(MOST_NODES, np.int64),
         np.empty(MOST_NODES),
         np.empty((MOST_NODES, 3)),
     )
-    near = np.zeros(shapes.position.shape[0], np.bool_)
-    latest = np.full(alpha.shape[0], -1)
     for p in range(shapes.position.shape[0]):
+        near[p] = False
         for k in range(shape_of(shapes, p, nodes, weights, gradients)):
             n = shapes.images.node[nodes[k]]
             if alpha[n] == NO_ALPHA:
@@ -155,26 +254,31 @@ def count_neighbours(shapes: ParticleShapes, alpha: Array, counts: Array) -> Arr
             if weights[k] > LEAST_WEIGHT and latest[n] != p:
                 latest[n] = p
                 counts[n] += 1
-    return near
 
 
 @deferred_kernel
 def list_neighbours(
     shapes: ParticleShapes,
-    particles: Array,
+    near: Array,
     material: int,
     alpha: Array,
+    latest: Array,
     following: Array,
     neighbours: Neighbours,
 ) -> None:
-    """Enter particles of a material in the lists of the shared nodes; ``following`` (N,) is their end."""
+    """Enter the near particles of a material in the lists of the shared nodes; ``following`` (N,) is their end.
+
+    ``latest`` (N,) is overwritten.
+    """
+    latest[:] = -1
     nodes, weights, gradients = (
         np.empty(MOST_NODES, np.int64),
         np.empty(MOST_NODES),
         np.empty((MOST_NODES, 3)),
     )
-    latest = np.full(alpha.shape[0], -1)
-    for p in particles:
+    for p in range(near.shape[0]):
+        if not near[p]:
+            continue
         for k in range(shape_of(shapes, p, nodes, weights, gradients)):
             n = shapes.images.node[nodes[k]]
             if alpha[n] == NO_ALPHA or weights[k] <= LEAST_WEIGHT or latest[n] == p:
@@ -267,16 +371,23 @@ def solve_in_place(matrix: Array, right: Array) -> None:
 
 @deferred_kernel
 def reach(
-    shapes: ParticleShapes, particles: Array, spacing: Vector, material: int, surfaces: TouchingSurfaces
+    shapes: ParticleShapes,
+    near: Array,
+    surface: Array,
+    spacing: Vector,
+    material: int,
+    surfaces: TouchingSurfaces,
 ) -> None:
-    """Enter how far the face centres of the given particles of a material reach along the normals."""
+    """Enter how far the face centres of the near particles on the surface of a material reach along the normals."""
     nodes, weights, gradients = (
         np.empty(MOST_NODES, np.int64),
         np.empty(MOST_NODES),
         np.empty((MOST_NODES, 3)),
     )
     prominence = surfaces.prominence[material]
-    for p in particles:
+    for p in range(near.shape[0]):
+        if not (near[p] and surface[p] > ON_SURFACE):
+            continue
         edges = edge_vectors(shapes, p, spacing)
         for k in range(shape_of(shapes, p, nodes, weights, gradients)):
             n = shapes.images.node[nodes[k]]

@@ -10,6 +10,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from solver.contact.deferred import deferred_kernel
 from solver.contact.law import NEGLIGIBLE, PRESENT_MASS, Array, ContactLaw, ContactScene, check_material
 from solver.contact.vectors import cross, minus, over, plus
 from solver.declare import Parameter, Vector
@@ -232,11 +233,11 @@ class PrescribedMotion(ContactLaw):
 
     def master_nodes(self, scene: ContactScene) -> Array:
         """Indices of the patches' nodes that hold mass of the master and none of the excluded material."""
-        mass = scene.nodal.mass
-        chosen = scene.owned_nodes & (mass[self.master_material] > NEGLIGIBLE)
-        if self.ExcludeMaterial >= 0:
-            chosen &= mass[self.ExcludeMaterial] < PRESENT_MASS
-        return np.flatnonzero(chosen)
+        nodes = scene.list_of_nodes("nodes of the master")
+        count = list_master_nodes(
+            scene.nodal.mass, self.master_material, self.ExcludeMaterial, scene.owned_nodes, nodes
+        )
+        return nodes[:count]
 
     def motion(self, scene: ContactScene) -> Motion:
         """The rigid motion of this step."""
@@ -265,6 +266,17 @@ class PrescribedMotion(ContactLaw):
         return self.profile
 
 
+@deferred_kernel
+def list_master_nodes(mass: Array, master: int, excluded: int, owned: Array, nodes: Array) -> int:
+    """List the owned nodes (N,) that hold mass of the master alone; returns how many they are."""
+    count = 0
+    for n in range(owned.shape[0]):
+        if owned[n] and mass[master, n] > NEGLIGIBLE and (excluded < 0 or mass[excluded, n] < PRESENT_MASS):
+            nodes[count] = n
+            count += 1
+    return count
+
+
 class Reactions(NamedTuple):
     """What a rigid master takes from the materials it acts on."""
 
@@ -285,8 +297,25 @@ def counted_and_others(
     scene: ContactScene, nodes: Array, reactions: Reactions
 ) -> list[tuple[Array, Reactions]]:
     """Nodes whose reactions count, and copies that other ranks count, each with where its reactions go."""
-    counted = scene.exchange.counted[nodes]
-    return [(nodes[counted], reactions), (nodes[~counted], new_reactions(len(reactions.force)))]
+    parted = scene.list_of_nodes("counted nodes and others")[: len(nodes)]
+    counted = part_nodes(nodes, scene.exchange.counted, parted)
+    return [(parted[:counted], reactions), (parted[counted:], new_reactions(len(reactions.force)))]
+
+
+@deferred_kernel
+def part_nodes(nodes: Array, counted: Array, parted: Array) -> int:
+    """Enter first the nodes that are counted (N,), then the others, both in order; returns how many are counted."""
+    count = 0
+    for n in nodes:
+        if counted[n]:
+            parted[count] = n
+            count += 1
+    following = count
+    for n in nodes:
+        if not counted[n]:
+            parted[following] = n
+            following += 1
+    return count
 
 
 @inline

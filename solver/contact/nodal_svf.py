@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
-
-from solver.contact.law import PRESENT_MASS, ContactLaw, ContactScene
+from solver.contact.deferred import deferred_kernel
+from solver.contact.law import PRESENT_MASS, Array, ContactLaw, ContactScene
+from solver.contact.vectors import minus, over, plus, put_vector, times, vector_at
 from solver.declare import Parameter, model
 
 
@@ -42,17 +42,47 @@ class NodalVolumeFraction(ContactLaw):
         if part == 1:
             return
         first, second = scene.listed(self.materials)
-        weight = 8.0 * scene.node_to_cell_weight
         nodal = scene.nodal
-        drag = np.full(weight.shape, scene.cell_volume * self.myu)
-        if self.use_svf:
-            drag *= (weight * nodal.volume[first] / scene.cell_volume) * (
-                weight * nodal.volume[second] / scene.cell_volume
-            )
-        else:
-            drag[(nodal.mass[first] <= PRESENT_MASS) | (nodal.mass[second] <= PRESENT_MASS)] = 0.0
-        acting = scene.owned_nodes
-        difference = (nodal.velocity_star[second] - nodal.velocity_star[first])[acting]
-        impulse = (drag * scene.dt / weight)[acting, None] * difference
-        nodal.velocity_star[first, acting] += impulse / nodal.mass[first, acting, None]
-        nodal.velocity_star[second, acting] -= impulse / nodal.mass[second, acting, None]
+        drag(
+            nodal.velocity_star,
+            nodal.mass,
+            nodal.volume,
+            first,
+            second,
+            scene.owned_nodes,
+            scene.node_to_cell_weight,
+            scene.cell_volume,
+            self.myu,
+            self.use_svf,
+            scene.dt,
+        )
+
+
+@deferred_kernel
+def drag(
+    velocity: Array,
+    mass: Array,
+    volume: Array,
+    first: int,
+    second: int,
+    owned: Array,
+    node_to_cell_weight: Array,
+    cell_volume: float,
+    myu: float,
+    by_fractions: bool,
+    dt: float,
+) -> None:
+    """Change the ``velocity`` (M, N, 3) of two materials at the owned nodes (N,)."""
+    for n in range(owned.shape[0]):
+        if not owned[n]:
+            continue
+        weight = 8.0 * node_to_cell_weight[n]
+        strength = cell_volume * myu
+        if by_fractions:
+            strength *= (weight * volume[first, n] / cell_volume) * (weight * volume[second, n] / cell_volume)
+        elif mass[first, n] <= PRESENT_MASS or mass[second, n] <= PRESENT_MASS:
+            strength = 0.0
+        difference = minus(vector_at(velocity[second], n), vector_at(velocity[first], n))
+        impulse = times(strength * dt / weight, difference)
+        put_vector(velocity[first], n, plus(vector_at(velocity[first], n), over(impulse, mass[first, n])))
+        put_vector(velocity[second], n, minus(vector_at(velocity[second], n), over(impulse, mass[second, n])))

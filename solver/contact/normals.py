@@ -16,6 +16,7 @@ from solver.dispatch import inline
 from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, reach
 from solver.nodal import EMPTY_MASS
+from solver.particles import Particles
 from solver.tensor import tensor_at
 
 SHORTEST = 1.0e-15
@@ -45,16 +46,20 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     the gradients, as in Uintah, those with respect to cell coordinates: where the cells are not square the
     normal leans towards their long side.
     """
-    nodal = scene.nodal
-    shape = nodal.velocity.shape
-    fields = SurfaceFields(np.zeros(shape), np.zeros(shape), np.zeros(shape[:2]))
+    nodal, new = scene.nodal, scene.workspace.zeros
+    materials, count = nodal.mass.shape
+    fields = SurfaceFields(
+        new("surface normals", materials, float, count, 3),
+        new("surface positions", materials, float, count, 3),
+        new("surface tractions", materials, float, count),
+    )
+    stress = new("stress at surfaces", materials, float, count, 6)
     spacing = scene.grid.spacing
     scale = (spacing[0], spacing[1], 0.0) if scene.axisymmetric else (1.0, 1.0, 1.0)
-    stress = np.zeros((*shape[:2], 6))
     shared = scene.once(shared_nodes)
-    wanted = np.zeros(shape[1], dtype=np.bool_)
+    wanted = new("shared", count, np.bool_)
     wanted[shared] = True
-    near = np.zeros(shape[1], dtype=np.bool_)
+    near = new("near shared", count, np.bool_)
     mark_cells_near(scene.grid.index, shared, near)
     for m, particles in enumerate(scene.particles):
         add_particles(
@@ -62,7 +67,7 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
             wanted,
             near,
             particles.mass,
-            particles.mass / particles.volume if scene.axisymmetric else particles.mass,
+            _density(scene, particles) if scene.axisymmetric else particles.mass,
             scale,
             particles.stress,
             fields.normal[m],
@@ -70,13 +75,13 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
             stress[m],
         )
     on_their_way = [
-        scene.exchange.add(fields.normal[m], fields.position[m], stress[m]) for m in range(shape[0])
+        scene.exchange.add(fields.normal[m], fields.position[m], stress[m]) for m in range(materials)
     ]
     for complete in on_their_way:
         complete()
     if scene.colinear_normals:
         make_colinear(shared, fields.normal, nodal.mass)
-    for m in range(shape[0]):
+    for m in range(materials):
         scene.boundary_conditions.apply_symmetry(fields.normal[m], m)
     finish(shared, fields, nodal.mass, stress)
     return fields
@@ -84,7 +89,28 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
 
 def shared_nodes(scene: ContactScene) -> Array:
     """The nodes that two or more materials have mass at, in order; use it with ``scene.once``."""
-    return np.flatnonzero(np.count_nonzero(scene.nodal.mass > EMPTY_MASS, axis=0) >= 2)
+    shared = scene.list_of_nodes("shared nodes")
+    return shared[: list_shared(scene.nodal.mass, shared)]
+
+
+def _density(scene: ContactScene, particles: Particles) -> Array:
+    density = scene.workspace.rows("density", len(particles), float)
+    return np.divide(particles.mass, particles.volume, out=density)
+
+
+@deferred_kernel
+def list_shared(mass: Array, shared: Array) -> int:
+    """Enter the nodes that two or more materials have mass at; returns how many they are."""
+    count = 0
+    for n in range(mass.shape[1]):
+        present = 0
+        for m in range(mass.shape[0]):
+            if mass[m, n] > EMPTY_MASS:
+                present += 1
+        if present >= 2:
+            shared[count] = n
+            count += 1
+    return count
 
 
 @deferred_kernel

@@ -97,8 +97,7 @@ class Specified(PrescribedMotion):
             return
         self.watch_condition(scene)
         reactions = new_reactions(nodal.mass.shape[0])
-        filled = nodes[self.filled(scene, nodes)]
-        for part_of_nodes, its_reactions in counted_and_others(scene, filled, reactions):
+        for part_of_nodes, its_reactions in counted_and_others(scene, self.filled(scene, nodes), reactions):
             impose_velocity_star(
                 nodal.velocity_star,
                 nodal.mass,
@@ -121,9 +120,17 @@ class Specified(PrescribedMotion):
         return scene.once(surface_fields).normal[self.master_material]
 
     def filled(self, scene: ContactScene, nodes: Array) -> Array:
-        """Whether all materials together fill each of the nodes beyond the constraint."""
-        volume = scene.nodal.volume[:, nodes].sum(axis=0) * 8.0 * scene.node_to_cell_weight[nodes]
-        return volume / scene.cell_volume > self.volume_constraint
+        """Those of the nodes that all materials together fill beyond the constraint."""
+        filled = scene.list_of_nodes("filled nodes")
+        count = list_filled(
+            nodes,
+            scene.nodal.volume,
+            scene.node_to_cell_weight,
+            scene.cell_volume,
+            self.volume_constraint,
+            filled,
+        )
+        return filled[:count]
 
     def watch_condition(self, scene: ContactScene) -> None:
         """Note the time when the force on the watched face, in the step before, first exceeds its limit."""
@@ -132,6 +139,27 @@ class Specified(PrescribedMotion):
         force = scene.face_forces.get(self.condition, (0.0, 0.0, 0.0))
         if max(abs(component) for component in force) > self.conditionValue:
             self.condition_met_at = scene.time
+
+
+@deferred_kernel
+def list_filled(
+    nodes: Array,
+    volume: Array,
+    node_to_cell_weight: Array,
+    cell_volume: float,
+    share: float,
+    filled: Array,
+) -> int:
+    """List the nodes at which the volumes (M, N) are more than a share of a cell; returns how many they are."""
+    count = 0
+    for n in nodes:
+        total = 0.0
+        for m in range(volume.shape[0]):
+            total += volume[m, n]
+        if total * 8.0 * node_to_cell_weight[n] / cell_volume > share:
+            filled[count] = n
+            count += 1
+    return count
 
 
 @deferred_kernel

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-
 from solver.contact.deferred import deferred_kernel
 from solver.contact.law import PRESENT_MASS, Array, ContactScene, same
 from solver.contact.logistic_regression import (
@@ -49,8 +47,7 @@ class SpecifiedFriction(PrescribedMotion):
             return
         nodal = scene.nodal
         reactions = new_reactions(nodal.mass.shape[0])
-        owned = np.flatnonzero(scene.owned_nodes)
-        for nodes, its_reactions in counted_and_others(scene, owned, reactions):
+        for nodes, its_reactions in counted_and_others(scene, owned_nodes(scene), reactions):
             slide_on_master(
                 scene.velocity(part),
                 nodal.mass,
@@ -67,6 +64,23 @@ class SpecifiedFriction(PrescribedMotion):
             )
         if part == 2:
             report_reactions(scene, self.master_material, reactions)
+
+
+def owned_nodes(scene: ContactScene) -> Array:
+    """The indices of the patches' nodes."""
+    nodes = scene.list_of_nodes("owned nodes")
+    return nodes[: list_owned(scene.owned_nodes, nodes)]
+
+
+@deferred_kernel
+def list_owned(owned: Array, nodes: Array) -> int:
+    """List the owned nodes (N,); returns how many they are."""
+    count = 0
+    for n in range(owned.shape[0]):
+        if owned[n]:
+            nodes[count] = n
+            count += 1
+    return count
 
 
 @deferred_kernel

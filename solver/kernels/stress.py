@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from solver.declare import Vector
 from solver.dispatch import inline, singly, takes_lanes
 from solver.jit import kernel
 from solver.kernels.chunks import CHUNK
@@ -41,6 +42,18 @@ def new_deformation_gradient(F: Tensor, L: Tensor, dt: float, subcycles: int) ->
         term = (term @ L) * (dt / k)
         series = series + term
     return series @ F
+
+
+@kernel
+def particle_cells(position: Any, anchor: Vector, spacing: Vector, own_cells: Any, cells: Any) -> None:
+    """The cells (n,) of positions (n, 3), counted x fastest in the box between two corners of cells."""
+    (x, y, z), (end_x, end_y, _) = own_cells
+    nx, ny = end_x - x, end_y - y
+    for p in range(cells.shape[0]):
+        i = math.floor((position[p, 0] - anchor[0]) / spacing[0]) - x
+        j = math.floor((position[p, 1] - anchor[1]) / spacing[1]) - y
+        k = math.floor((position[p, 2] - anchor[2]) / spacing[2]) - z
+        cells[p] = i + nx * (j + ny * k)
 
 
 @kernel
