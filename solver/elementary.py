@@ -1,7 +1,7 @@
-"""Exponential and logarithm of eight numbers at once, to about the last digit.
+"""Elementary functions of eight numbers at once, to about the last digit.
 
-Series whose terms beyond the last are below the rounding: nothing is fitted. Kernels take them for ``math.exp``,
-``math.log`` and ``**`` of lanes (``solver.jit`` tells numba so).
+Series whose terms beyond the last are below the rounding: nothing is fitted. Kernels take them for those of ``math``
+and ``**`` where they are given lanes (``solver.jit`` tells numba so).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from solver.dispatch import inline
-from solver.lanes import Lanes, floor, where
+from solver.lanes import Lanes, anywhere, floor, where
 
 LN_2_HIGH = 0.693147180369123816490
 """The first 32 bits of ln 2: whole numbers below 2^20 times it are exact."""
@@ -78,3 +78,62 @@ def logarithm(x: Lanes) -> Lanes:
 def power(a: Lanes, b: Lanes | float) -> Lanes:
     """a^b for a >= 0; 0^0 is 1, as everywhere."""
     return where(b == 0.0, 1.0, exponential(b * logarithm(a)))
+
+
+@inline
+def small_hyperbolic_sine(x: Lanes) -> Lanes:
+    """Sinh x for |x| <= 1, by Taylor's series to the 19th power."""
+    z = x * x
+    z2 = z * z
+    z4 = z2 * z2
+    low = (1.0 / 6.0 + z * (1.0 / 120.0)) + z2 * (1.0 / 5040.0 + z * (1.0 / 362880.0))
+    high = (1.0 / 39916800.0 + z * (1.0 / 6227020800.0)) + z2 * (
+        1.0 / 1307674368000.0 + z * (1.0 / 355687428096000.0)
+    )
+    return x + x * z * (low + z4 * (high + z4 * (1.0 / 121645100408832000.0)))
+
+
+@inline
+def hyperbolic_sine(x: Lanes) -> Lanes:
+    """Sinh x, near zero by its series, where the difference of exponentials would lose digits."""
+    size = abs(x)
+    grown = exponential(size)
+    large = 0.5 * (grown - 1.0 / grown)
+    return where(size < 1.0, small_hyperbolic_sine(x), where(x < 0.0, -large, large))
+
+
+@inline
+def hyperbolic_cosine(x: Lanes) -> Lanes:
+    """Cosh x."""
+    grown = exponential(abs(x))
+    return 0.5 * (grown + 1.0 / grown)
+
+
+@inline
+def hyperbolic_tangent(x: Lanes) -> Lanes:
+    """Tanh x, near zero as sinh x / cosh x with the series of the former."""
+    size = abs(x)
+    grown = exponential(size)
+    large = 1.0 - 2.0 / (grown * grown + 1.0)
+    sine = small_hyperbolic_sine(where(size < 1.0, x, 0.0))
+    small = sine / (0.5 * (grown + 1.0 / grown))
+    return where(size < 1.0, small, where(x < 0.0, -large, large))
+
+
+LARGEST_ERROR_ARGUMENT = 6.0
+"""Beyond it the error function is 1 to rounding."""
+
+
+@inline
+def error_function(x: Lanes) -> Lanes:
+    """Erf x = 2 / sqrt(pi) e^(-x^2) sum of 2^n x^(2n + 1) / (1 3 5 ... (2n + 1)), whose terms have one sign."""
+    size = where(abs(x) > LARGEST_ERROR_ARGUMENT, LARGEST_ERROR_ARGUMENT, abs(x))
+    ratio = 2.0 * size * size
+    term = size * exponential(-0.5 * ratio) * (2.0 / math.sqrt(math.pi))
+    total = term
+    odd = 1.0
+    while anywhere(term > 1.0e-17 * total):
+        odd += 2.0
+        term *= ratio / odd
+        total += term
+    return where(x < 0.0, -total, total)

@@ -50,6 +50,12 @@ class Lanes:
     def __rtruediv__(self, other: float) -> Lanes:
         return Lanes(*(other / self.numbers))
 
+    def __neg__(self) -> Lanes:
+        return Lanes(*-self.numbers)
+
+    def __abs__(self) -> Lanes:
+        return Lanes(*np.abs(self.numbers))
+
     __radd__ = __add__
     __rmul__ = __mul__
 

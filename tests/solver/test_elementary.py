@@ -1,4 +1,4 @@
-"""Exponential, logarithm and power of eight numbers, against NumPy's."""
+"""Elementary functions of eight numbers, against NumPy's and those of ``math``."""
 
 from __future__ import annotations
 
@@ -76,3 +76,30 @@ def test_what_lies_at_the_edges():
         np.testing.assert_allclose(logarithms, np.log(y), rtol=LAST_DIGITS)
         np.testing.assert_allclose(powers, np.sqrt(y), rtol=1.0e-13)
     np.testing.assert_array_equal(ones, 1.0)
+
+
+@kernel
+def compute_others(x, sines, cosines, tangents, errors):
+    for start in range(0, x.shape[0], 8):
+        p = Eight(start)
+        sines[p] = math.sinh(x[p])
+        cosines[p] = math.cosh(x[p])
+        tangents[p] = math.tanh(x[p])
+        errors[p] = math.erf(x[p])
+
+
+def test_hyperbolic_and_error_functions():
+    rng = np.random.default_rng(3)
+    small = rng.choice((-1.0, 1.0), 4000) * 10.0 ** rng.uniform(-12.0, 0.0, 4000)
+    x = np.concatenate([rng.uniform(-40.0, 40.0, 4000), rng.uniform(-3.0, 3.0, 4000), small])
+    x[:8] = 0.0, -0.0, 1.0, -1.0, 700.0, -700.0, math.inf, math.nan
+    results = np.zeros((4, x.size))
+    compute_others(x, *results)
+    with np.errstate(all="ignore"):
+        expected = np.sinh(x), np.cosh(x), np.tanh(x), np.vectorize(math.erf)(x)
+    for found, right in zip(results[:3], expected, strict=False):
+        np.testing.assert_allclose(found, right, rtol=2.0 * LAST_DIGITS)
+    np.testing.assert_allclose(results[3], expected[3], rtol=2.0e-15)  # the rounding of x^2 times x^2
+    in_python = elementary.hyperbolic_sine, elementary.hyperbolic_cosine, elementary.hyperbolic_tangent
+    for function, found in zip((*in_python, elementary.error_function), results, strict=False):
+        np.testing.assert_allclose(function(Lanes(*x[8:16])).numbers, found[8:16], rtol=LAST_DIGITS)
