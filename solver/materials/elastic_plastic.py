@@ -225,11 +225,14 @@ def __getattr__(name: str) -> type:
 
 
 @implements(plastic_strain_rate, ElasticPlastic)
+@lanewise
 def _(model: ElasticPlastic, state: Any, p: int) -> float:
-    return state.plastic_strain_rate[p] if model.evolve_damage else 0.0
+    rate = state.plastic_strain_rate[p]
+    return where(model.evolve_damage, rate, like(0.0, rate))
 
 
 @implements(fractures, ElasticPlastic)
+@lanewise
 def _(model: ElasticPlastic, state: Any, p: int, damage: float) -> bool:
     return breaks(model, state.porosity[p], state.plastic_strain_rate[p], damage)
 
@@ -523,6 +526,12 @@ def grown_porosity(model: Any, porosity: float, flow: Flow, motion: Kinematics, 
 
 
 @singly
+def largest_principal_value(stress: Tensor) -> float:
+    """The largest principal value of a symmetric tensor."""
+    return principal_values(stress).first
+
+
+@inline
 def fails(
     model: Any,
     start: PlasticityState,
@@ -535,15 +544,16 @@ def fails(
 
     The porosity criterion is TEPLA-F without its strain term, f^2 / f_c^2 > 1, as in Uintah; see :func:`breaks`.
     """
-    if flow.melted:
-        return True
-    if model.check_max_stress_failure and principal_values(stress).first > model.critical_stress:
-        return True
-    if not flow.plastic:
-        return False
-    if model.check_TEPLA_failure_criterion and porosity > model.critical_porosity:
-        return True
-    return is_checked(model.stability_check) and is_unstable(model, start, flow, stress, motion, porosity)
+    failed = flow.melted
+    if model.check_max_stress_failure:
+        failed = failed | (largest_principal_value(stress) > model.critical_stress)
+    if model.check_TEPLA_failure_criterion:
+        failed = failed | (flow.plastic & (porosity > model.critical_porosity))
+    if is_checked(model.stability_check):
+        checked = flow.plastic & negation(failed)
+        if anywhere(checked):
+            failed = failed | (checked & is_unstable(model, start, flow, stress, motion, porosity))
+    return failed
 
 
 @inline
@@ -553,10 +563,11 @@ def breaks(model: Any, porosity: float, plastic_strain_rate: float, damage: floa
     (f / f_c)^2 + (e_p / e_p^f)^2 > 1, where damage stands for the ratio of the strains, which it sums up over a
     path along which the strain at fracture changes.
     """
+    flows = plastic_strain_rate > 0.0
     if not (model.failure_is_checked and model.check_TEPLA_failure_criterion and model.TEPLA_with_damage):
-        return False
+        return like(False, flows)
     voids = porosity / model.critical_porosity
-    return plastic_strain_rate > 0.0 and voids * voids + damage * damage > 1.0
+    return flows & (voids * voids + damage * damage > 1.0)
 
 
 @inline
@@ -570,9 +581,9 @@ def is_unstable(
 ) -> bool:
     """Whether the stability check finds localization with the tangent at the end of the step."""
     end = at_plastic_strain(start, flow.plastic_strain, flow.plastic_strain_rate)
-    sigma_y = flow_stress(model.flow_model, end)
-    if not sigma_y > 0.0:
-        return True
+    found = flow_stress(model.flow_model, end)
+    strong = found > 0.0
+    sigma_y = where(strong, found, 1.0)
     normal = yield_normal(model.yield_condition, stress, sigma_y, porosity)
     hardening = hardening_term(
         model.yield_condition,
@@ -584,7 +595,7 @@ def is_unstable(
         nucleation(model, flow.plastic_strain),
     )
     tangent = tangent_modulus(model.bulk_modulus, start.shear_modulus, normal, hardening)
-    return localizes(model.stability_check, stress, motion.rate, tangent)
+    return negation(strong) | localizes(model.stability_check, stress, motion.rate, tangent)
 
 
 @inline

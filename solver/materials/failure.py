@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from solver.dispatch import generic_with_default, inline, singly
+from solver.dispatch import generic_with_default, inline, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.constitutive import DELETE, Material, Point, Step
 from solver.materials.damage import (
     DamagePoint,
@@ -44,12 +45,14 @@ def new_failure(damage: Any, erosion: Any, count: int) -> Failure:
 
 
 @generic_with_default
+@lanewise
 def plastic_strain_rate(model: Any, state: Any, p: int) -> float:
     """Rate of plastic strain that damages particle ``p`` in the step; 0 for models without plasticity."""
     return 0.0
 
 
 @generic_with_default
+@lanewise
 def fractures(model: Any, state: Any, p: int, damage: float) -> bool:
     """Whether particle ``p`` breaks by its porosity together with a scalar damage."""
     return False
@@ -76,10 +79,11 @@ def weakens(failure: Failure) -> bool:
     return damages(failure.damage) or lets_fail(failure.erosion)
 
 
-@singly
+@inline
 def restrained(failure: Failure, point: Point) -> Point:
     """The particle with the motion that its erosion algorithm leaves it, where it failed before the step."""
-    if point.localized == 0:
+    failed = point.localized != 0
+    if not anywhere(failed):
         return point
     motion = restrain(
         failure.erosion,
@@ -90,8 +94,8 @@ def restrained(failure: Failure, point: Point) -> Point:
     return Point(
         point.stress,
         point.deformation_gradient_old,
-        motion.deformation_gradient,
-        motion.velocity_gradient,
+        where(failed, motion.deformation_gradient, point.deformation_gradient),
+        where(failed, motion.velocity_gradient, point.velocity_gradient),
         point.volume_old,
         point.volume,
         point.mass,
@@ -101,7 +105,7 @@ def restrained(failure: Failure, point: Point) -> Point:
     )
 
 
-@singly
+@inline
 def weakened(
     failure: Failure,
     model: Any,
@@ -130,13 +134,25 @@ def weakened(
         step,
     )
     stress, localized = damaged.stress, damaged.localized
-    if counts_strain(failure.damage) and localized == 0:
-        damage = scalar_damage(failure.damage, failure.damage_state, p)
-        if fractures(model, state, p, damage):
-            localized = 1
-    if lets_fail(failure.erosion) and localized != DELETE:
-        if localized != point.localized:
-            failure.erosion_state.failure_time[p] = step.time
-        if localized != 0:
-            stress = erode(failure.erosion, stress, step.time - failure.erosion_state.failure_time[p])
+    if counts_strain(failure.damage):
+        broken = fractures(model, state, p, scalar_damage(failure.damage, failure.damage_state, p))
+        localized = where(broken & (localized == 0), 1, localized)
+    if lets_fail(failure.erosion):
+        stress = eroded(failure, p, stress, localized, point.localized, step.time)
     return DamageUpdate(stress, localized)
+
+
+@inline
+def eroded(
+    failure: Failure, p: int, stress: Tensor, localized: int, localized_before: int, time: float
+) -> Tensor:
+    """Stress of a particle after erosion; the time of its failure is noted."""
+    kept = localized != DELETE
+    changed = kept & (localized != localized_before)
+    failed_at = where(changed, time, failure.erosion_state.failure_time[p])
+    if anywhere(changed):
+        failure.erosion_state.failure_time[p] = failed_at
+    failed = kept & (localized != 0)
+    if anywhere(failed):
+        stress = where(failed, erode(failure.erosion, stress, time - failed_at), stress)
+    return stress

@@ -152,11 +152,13 @@ class HyperElasticPlastic(NamedTuple):
 
 
 @implements(plastic_strain_rate, HyperElasticPlastic)
+@lanewise
 def _(model: HyperElasticPlastic, state: Any, p: int) -> float:
     return state.plastic_strain_rate[p]
 
 
 @implements(fractures, HyperElasticPlastic)
+@lanewise
 def _(model: HyperElasticPlastic, state: Any, p: int, damage: float) -> bool:
     return breaks(model, state.porosity[p], state.plastic_strain_rate[p], damage)
 

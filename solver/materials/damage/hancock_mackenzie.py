@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 from numpy.typing import NDArray
 
 from solver.declare import Parameter, SubModel, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.constitutive import Material, Step
 from solver.materials.damage import (
     DamagePoint,
@@ -73,6 +74,7 @@ def _(model: HancockMacKenzieDamage, state: ScalarDamage, particles: Particles, 
 
 
 @implements(update_damage, HancockMacKenzieDamage)
+@lanewise
 def _(
     model: HancockMacKenzieDamage,
     state: ScalarDamage,
@@ -82,9 +84,11 @@ def _(
     step: Step,
 ) -> DamageUpdate:
     mean, equivalent = trace(point.stress) / 3.0, math.sqrt(1.5) * norm(deviator(point.stress))
-    if mean > 0.0 and equivalent > 0.0:
-        exponent = min(1.5 * mean / equivalent, LARGEST_EXPONENT)
-        state.damage[p] += point.plastic_strain_rate * step.dt * math.exp(exponent) / 1.65
+    grows = (mean > 0.0) & (equivalent > 0.0) & (point.plastic_strain_rate != 0.0)
+    if anywhere(grows):
+        exponent = min(1.5 * mean / where(grows, equivalent, 1.0), LARGEST_EXPONENT)
+        growth = point.plastic_strain_rate * step.dt * math.exp(exponent) / 1.65
+        state.damage[p] += where(grows, growth, 0.0)
     return DamageUpdate(point.stress, point.localized)
 
 
@@ -94,5 +98,6 @@ def _(model: HancockMacKenzieDamage) -> bool:
 
 
 @implements(scalar_damage, HancockMacKenzieDamage)
+@lanewise
 def _(model: HancockMacKenzieDamage, state: ScalarDamage, p: int) -> float:
     return state.damage[p]

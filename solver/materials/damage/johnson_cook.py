@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 from numpy.typing import NDArray
 
 from solver.declare import Parameter, SubModel, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.constitutive import Material, Step
 from solver.materials.damage import (
     DamagePoint,
@@ -83,25 +84,30 @@ def fracture_strain(
 ) -> float:
     """Plastic strain at fracture under a steady stress."""
     mean, equivalent = trace(stress) / 3.0, math.sqrt(1.5) * norm(deviator(stress))
-    triaxiality = mean / equivalent if equivalent != 0.0 else 0.0
+    sheared = equivalent != 0.0
+    triaxiality = where(sheared, mean / where(sheared, equivalent, 1.0), 0.0)
     triaxiality = min(max(triaxiality, -LARGEST_TRIAXIALITY), LARGEST_TRIAXIALITY)
-    if plastic_strain_rate < 1.0:
-        rate_factor = (1.0 + plastic_strain_rate) ** model.D4
-    else:
-        rate_factor = 1.0 + model.D4 * math.log(plastic_strain_rate)
+    slow = plastic_strain_rate < 1.0
+    rate_factor = 1.0 + model.D4 * math.log(max(plastic_strain_rate, 1.0))
+    if anywhere(slow):
+        rate_factor = where(slow, (1.0 + plastic_strain_rate) ** model.D4, rate_factor)
     stress_factor = model.D1 + model.D2 * math.exp(model.D3 * triaxiality)
     return stress_factor * rate_factor * (1.0 + model.D5 * homologous_temperature)
 
 
 @implements(update_damage, JohnsonCookDamage)
+@lanewise
 def _(
     model: JohnsonCookDamage, state: ScalarDamage, p: int, point: DamagePoint, material: Material, step: Step
 ) -> DamageUpdate:
-    warmer = point.temperature - material.room_temperature
-    homologous = warmer / (material.melt_temperature - material.room_temperature)
-    strain = fracture_strain(model, point.stress, point.plastic_strain_rate, homologous)
-    damage = state.damage[p] + point.plastic_strain_rate * step.dt / strain
-    state.damage[p] = damage if damage >= model.critical_scalar_damage else 0.0
+    damage = state.damage[p]
+    flows = point.plastic_strain_rate != 0.0
+    if anywhere(flows):
+        warmer = point.temperature - material.room_temperature
+        homologous = warmer / (material.melt_temperature - material.room_temperature)
+        strain = fracture_strain(model, point.stress, point.plastic_strain_rate, homologous)
+        damage += where(flows, point.plastic_strain_rate * step.dt / strain, 0.0)
+    state.damage[p] = where(damage >= model.critical_scalar_damage, damage, 0.0)
     return DamageUpdate(point.stress, point.localized)
 
 
@@ -111,5 +117,6 @@ def _(model: JohnsonCookDamage) -> bool:
 
 
 @implements(scalar_damage, JohnsonCookDamage)
+@lanewise
 def _(model: JohnsonCookDamage, state: ScalarDamage, p: int) -> float:
     return state.damage[p]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import Material, Step
 from solver.materials.damage import DamagePoint, DamageUpdate, damages, update_damage
 
@@ -21,6 +21,7 @@ def _(model: NoDamage) -> bool:
 
 
 @implements(update_damage, NoDamage)
+@lanewise
 def _(
     model: NoDamage, state: Any, p: int, point: DamagePoint, material: Material, step: Step
 ) -> DamageUpdate:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.erosion import Motion, erode, lets_fail, restrain, volumetric_motion
 from solver.tensor import Tensor, isotropic, trace
 
@@ -20,11 +20,13 @@ class AllowNoShear(NamedTuple):
 
 
 @implements(restrain, AllowNoShear)
+@lanewise
 def _(algorithm: AllowNoShear, old_gradient: Tensor, gradient: Tensor, velocity_gradient: Tensor) -> Motion:
     return volumetric_motion(gradient, velocity_gradient)
 
 
 @implements(erode, AllowNoShear)
+@lanewise
 def _(algorithm: AllowNoShear, stress: Tensor, failed_for: float) -> Tensor:
     return isotropic(trace(stress) / 3.0)
 

@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import where
 from solver.materials.erosion import Motion, erode, lets_fail, restrain, volumetric_motion
 from solver.tensor import Tensor, isotropic, trace
 
@@ -19,16 +20,16 @@ class AllowNoTension(NamedTuple):
 
 
 @implements(restrain, AllowNoTension)
+@lanewise
 def _(algorithm: AllowNoTension, old_gradient: Tensor, gradient: Tensor, velocity_gradient: Tensor) -> Motion:
     return volumetric_motion(gradient, velocity_gradient)
 
 
 @implements(erode, AllowNoTension)
+@lanewise
 def _(algorithm: AllowNoTension, stress: Tensor, failed_for: float) -> Tensor:
     mean = trace(stress) / 3.0
-    if mean > 0.0:
-        return stress * math.exp(-failed_for / algorithm.char_time)
-    return isotropic(mean)
+    return where(mean > 0.0, stress * math.exp(-failed_for / algorithm.char_time), isotropic(mean))
 
 
 @implements(lets_fail, AllowNoTension)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.erosion import Motion, erode, lets_fail, restrain
 from solver.tensor import Tensor
 
@@ -29,11 +29,13 @@ class PreserveStress(NamedTuple):
 
 
 @implements(restrain, NoErosion, PreserveStress)
+@lanewise
 def _(algorithm: NoErosion, old_gradient: Tensor, gradient: Tensor, velocity_gradient: Tensor) -> Motion:
     return Motion(gradient, velocity_gradient)
 
 
 @implements(erode, NoErosion, PreserveStress)
+@lanewise
 def _(algorithm: NoErosion, stress: Tensor, failed_for: float) -> Tensor:
     return stress
 

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.erosion import Motion, erode, lets_fail, restrain
 from solver.tensor import Tensor, isotropic
 
@@ -19,11 +19,13 @@ class ZeroStress(NamedTuple):
 
 
 @implements(restrain, ZeroStress)
+@lanewise
 def _(algorithm: ZeroStress, old_gradient: Tensor, gradient: Tensor, velocity_gradient: Tensor) -> Motion:
     return Motion(old_gradient, isotropic(0.0))
 
 
 @implements(erode, ZeroStress)
+@lanewise
 def _(algorithm: ZeroStress, stress: Tensor, failed_for: float) -> Tensor:
     return stress * math.exp(-failed_for / algorithm.char_time)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.materials.stability import TangentModulus, elastic_stress, is_checked, localizes
 from solver.tensor import Tensor, double_dot
 
@@ -29,5 +29,6 @@ def _(check: Drucker) -> bool:
 
 
 @implements(localizes, Drucker)
+@lanewise
 def _(check: Drucker, stress: Tensor, rate: Tensor, tangent: TangentModulus) -> bool:
     return work_rate_falls(rate, tangent)
