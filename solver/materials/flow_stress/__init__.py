@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from solver.declare import family
-from solver.dispatch import generic, generic_with_default
+from solver.dispatch import generic, generic_with_default, lanewise
 from solver.materials.plasticity_state import PlasticityState
 
 FLOW_STRESS = family(
@@ -37,6 +37,7 @@ def rate_slope(model: Any, state: PlasticityState) -> float:
 
 
 @generic_with_default
+@lanewise
 def in_step(model: Any, state: PlasticityState) -> Any:
     """The model for one particle in one step, in which only plastic strain and its rate are still to be found.
 
@@ -55,6 +56,7 @@ class Response(NamedTuple):
 
 
 @generic_with_default
+@lanewise
 def response(model: Any, state: PlasticityState) -> Response:
     """Flow stress and both derivatives; models to which they have much in common find that once."""
     return Response(flow_stress(model, state), hardening_slope(model, state), rate_slope(model, state))

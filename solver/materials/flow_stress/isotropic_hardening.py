@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -19,15 +19,18 @@ class IsotropicHardening(NamedTuple):
 
 
 @implements(flow_stress, IsotropicHardening)
+@lanewise
 def _(model: IsotropicHardening, state: PlasticityState) -> float:
     return model.sigma_Y + model.K * state.plastic_strain
 
 
 @implements(hardening_slope, IsotropicHardening)
+@lanewise
 def _(model: IsotropicHardening, state: PlasticityState) -> float:
     return model.K
 
 
 @implements(rate_slope, IsotropicHardening)
+@lanewise
 def _(model: IsotropicHardening, state: PlasticityState) -> float:
     return 0.0

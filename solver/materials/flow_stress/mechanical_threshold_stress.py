@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, like, negation, where
 from solver.materials.flow_stress import (
     Response,
     flow_stress,
@@ -100,17 +101,21 @@ class Phase(NamedTuple):
 @inline
 def phase(model: MechanicalThresholdStress, temperature: float) -> Phase:
     """The constants at a temperature."""
-    if temperature > model.T_c:
-        return Phase(
-            model.g_0i_c, model.sigma_i_c, model.g_0es_c, model.sigma_es0_c, model.a_0_c, model.a_3_c
-        )
-    return Phase(model.g_0i, model.sigma_i, model.g_0es, model.sigma_es0, model.a_0, model.a_3)
+    hot = temperature > model.T_c
+    return Phase(
+        where(hot, model.g_0i_c, model.g_0i),
+        where(hot, model.sigma_i_c, model.sigma_i),
+        where(hot, model.g_0es_c, model.g_0es),
+        where(hot, model.sigma_es0_c, model.sigma_es0),
+        where(hot, model.a_0_c, model.a_0),
+        where(hot, model.a_3_c, model.a_3),
+    )
 
 
 @inline
 def rate_of(state: PlasticityState) -> float:
     """The strain rate that the model works with, never zero."""
-    return state.strain_rate if state.strain_rate != 0.0 else LEAST_RATE
+    return where(state.strain_rate != 0.0, state.strain_rate, LEAST_RATE)
 
 
 @inline
@@ -128,9 +133,8 @@ def activation(thermal_energy: float, reference_rate: float, rate: float, q: flo
 @inline
 def scaling(activated: float, p: float) -> float:
     """The scaling factor S = (1 - activation)^(1/p), zero where heat alone overcomes the barriers."""
-    if activated >= 1.0:
-        return 0.0
-    return root(1.0 - activated, p)
+    free = activated >= 1.0
+    return where(free, 0.0, root(where(free, 0.0, 1.0 - activated), p))
 
 
 @inline
@@ -138,32 +142,37 @@ def threshold_stress(
     model: MechanicalThresholdStress, initial_rate: float, saturation: float, strain: float
 ) -> float:
     """sigma_e after a plastic strain, by the midpoint rule with Newton's iteration in each step."""
-    threshold = 0.0
-    if strain <= 0.0:
-        return threshold
+    threshold = like(0.0, strain)
+    growing = strain > 0.0
     growth = strain / SUBSTEPS * initial_rate
     back = growth / math.tanh(model.alpha)
     sharpness = 0.5 * model.alpha / saturation
     for _ in range(SUBSTEPS):
+        if not anywhere(growing):
+            break
         start = threshold
+        seeks = growing
         for _ in range(MOST_ITERATIONS):
             bend = math.tanh(sharpness * (start + threshold))
             residual = threshold + back * bend - start - growth
-            threshold = abs(threshold - residual / (1.0 + back * sharpness * (1.0 - bend * bend)))
-            if abs(residual) <= STRESS_TOLERANCE:
+            closer = abs(threshold - residual / (1.0 + back * sharpness * (1.0 - bend * bend)))
+            threshold = where(seeks, closer, threshold)
+            seeks = seeks & negation(abs(residual) <= STRESS_TOLERANCE)
+            if not anywhere(seeks):
                 break
-        if threshold > saturation:
-            return saturation
+        saturated = threshold > saturation
+        threshold = where(saturated, saturation, threshold)
+        growing = growing & negation(saturated)
     return threshold
 
 
 @inline
 def scaling_slope(activated: float, p: float, q: float, reference_rate: float, rate: float) -> float:
     """Derivative of the scaling factor by the strain rate."""
-    if activated <= 0.0 or activated >= 1.0:
-        return 0.0
-    chain = activated / (p * q * rate * math.log(reference_rate / rate))
-    return chain * (1.0 - activated) ** (1.0 / p - 1.0)
+    outside = (activated <= 0.0) | (activated >= 1.0)
+    order = where(outside, 1.0, math.log(reference_rate / rate))
+    chain = where(outside, 0.0, activated) / (p * q * rate * order)
+    return chain * where(outside, 1.0, 1.0 - activated) ** (1.0 / p - 1.0)
 
 
 class InStep(NamedTuple):
@@ -187,12 +196,13 @@ class InStep(NamedTuple):
 
 
 @implements(in_step, MechanicalThresholdStress)
+@lanewise
 def _(model: MechanicalThresholdStress, state: PlasticityState) -> InStep:
     rate, T = rate_of(state), state.temperature
     constants = phase(model, T)
     energy = model.koverbcubed * T / state.shear_modulus
     evolving = activation(energy / model.g_0e, model.edot_0e, rate, model.q_e)
-    strength = intrinsic = 0.0
+    strength = intrinsic = like(0.0, rate)
     if model.p_i > 0.0:
         intrinsic = activation(energy / constants.g_0i, model.edot_0i, rate, model.q_i)
         strength = scaling(intrinsic, model.p_i) * constants.sigma_i
@@ -243,36 +253,43 @@ def rate_slope_at(law: InStep, threshold: float) -> float:
 
 
 @implements(response, InStep)
+@lanewise
 def _(law: InStep, state: PlasticityState) -> Response:
     threshold = threshold_of(law, state)
     return Response(stress_at(law, threshold), hardening_at(law, threshold), rate_slope_at(law, threshold))
 
 
 @implements(flow_stress, InStep)
+@lanewise
 def _(law: InStep, state: PlasticityState) -> float:
     return stress_at(law, threshold_of(law, state))
 
 
 @implements(hardening_slope, InStep)
+@lanewise
 def _(law: InStep, state: PlasticityState) -> float:
     return hardening_at(law, threshold_of(law, state))
 
 
 @implements(rate_slope, InStep)
+@lanewise
 def _(law: InStep, state: PlasticityState) -> float:
     return rate_slope_at(law, threshold_of(law, state))
 
 
 @implements(flow_stress, MechanicalThresholdStress)
+@lanewise
 def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
     return flow_stress(in_step(model, state), state)
 
 
 @implements(hardening_slope, MechanicalThresholdStress)
+@lanewise
 def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
     return hardening_slope(in_step(model, state), state)
 
 
 @implements(rate_slope, MechanicalThresholdStress)
+@lanewise
 def _(model: MechanicalThresholdStress, state: PlasticityState) -> float:
     return rate_slope(in_step(model, state), state)

@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -66,7 +67,7 @@ class Rate(NamedTuple):
 @inline
 def rate_of(model: PrestonTonksWallace, state: PlasticityState) -> Rate:
     """The plastic strain rate beside that of a transverse wave crossing an atom."""
-    rate = state.plastic_strain_rate if state.plastic_strain_rate > 0.0 else LEAST_RATE
+    rate = where(state.plastic_strain_rate > 0.0, state.plastic_strain_rate, LEAST_RATE)
     atoms = 4.0 * math.pi * state.density / (3.0 * model.M * ATOMIC_MASS_UNIT)
     xi = 0.5 * atoms ** (1.0 / 3.0) * math.sqrt(state.shear_modulus / state.density)
     return Rate(rate, rate / (model.gamma * xi), state.temperature / state.melt_temperature)
@@ -97,9 +98,24 @@ def overdriven_limits(model: PrestonTonksWallace, rate: Rate) -> Limits:
     return Limits(max(thermal.saturation, shock), max(thermal.yielding, jump))
 
 
+@inline
+def limits_at(model: PrestonTonksWallace, rate: Rate) -> Limits:
+    """Those of thermally activated glide, and at high rates of overdriven shock."""
+    limits = thermal_limits(model, rate)
+    fast = rate.plastic > SHOCK_RATE
+    if anywhere(fast):
+        high = overdriven_limits(model, rate)
+        limits = Limits(
+            where(fast, high.saturation, limits.saturation), where(fast, high.yielding, limits.yielding)
+        )
+    return limits
+
+
 class Voce(NamedTuple):
     """The hardening law between yield and saturation; see the model's docstring."""
 
+    hardens: bool
+    """Whether the two differ; elsewhere the other numbers mean nothing."""
     a: float
     b: float
     phi: float
@@ -109,36 +125,35 @@ class Voce(NamedTuple):
 
 @inline
 def voce(model: PrestonTonksWallace, limits: Limits) -> Voce:
-    """The hardening law between two different limits."""
-    a = (model.s0 - limits.yielding) / model.p
-    b = (limits.saturation - limits.yielding) / a
+    """The hardening law between two limits."""
+    hardens = limits.saturation != limits.yielding
+    a = where(hardens, (model.s0 - limits.yielding) / model.p, 1.0)
+    b = where(hardens, (limits.saturation - limits.yielding) / a, 1.0)
     phi = math.exp(b) - 1.0
-    return Voce(a, b, phi, model.theta / (a * phi))
+    return Voce(hardens, a, b, phi, model.theta / (a * phi))
 
 
 @implements(flow_stress, PrestonTonksWallace)
+@lanewise
 def _(model: PrestonTonksWallace, state: PlasticityState) -> float:
-    rate = rate_of(model, state)
-    limits = overdriven_limits(model, rate) if rate.plastic > SHOCK_RATE else thermal_limits(model, rate)
-    stress = limits.saturation
-    if limits.saturation != limits.yielding:
-        law = voce(model, limits)
-        stress += law.a * math.log(1.0 - law.phi * math.exp(-law.b - law.decay * state.plastic_strain))
-    return 2.0 * stress * state.shear_modulus
+    limits = limits_at(model, rate_of(model, state))
+    law = voce(model, limits)
+    missing = law.a * math.log(1.0 - law.phi * math.exp(-law.b - law.decay * state.plastic_strain))
+    return 2.0 * (limits.saturation + where(law.hardens, missing, 0.0)) * state.shear_modulus
 
 
 @implements(hardening_slope, PrestonTonksWallace)
+@lanewise
 def _(model: PrestonTonksWallace, state: PlasticityState) -> float:
     """Slope between the limits of both regimes, at any rate, as Uintah's iteration takes it."""
-    limits = overdriven_limits(model, rate_of(model, state))
-    if limits.saturation == limits.yielding:
-        return 0.0
-    law = voce(model, limits)
+    law = voce(model, overdriven_limits(model, rate_of(model, state)))
     unsaturated = law.phi * math.exp(-law.b - law.decay * state.plastic_strain)
-    return 2.0 * state.shear_modulus * law.a * law.decay * unsaturated / (1.0 - unsaturated)
+    slope = 2.0 * state.shear_modulus * law.a * law.decay * unsaturated / (1.0 - unsaturated)
+    return where(law.hardens, slope, 0.0)
 
 
 @implements(rate_slope, PrestonTonksWallace)
+@lanewise
 def _(model: PrestonTonksWallace, state: PlasticityState) -> float:
     """Slope of thermally activated glide; above 1000/s at least that of the overdriven saturation stress."""
     rate = rate_of(model, state)
@@ -148,16 +163,17 @@ def _(model: PrestonTonksWallace, state: PlasticityState) -> float:
     arrhenius_slope *= model.kappa * rate.homologous / rate.plastic
     saturation_slope = -(model.s0 - model.sinf) * arrhenius_slope
     yield_slope = -(model.y0 - model.yinf) * arrhenius_slope
-    slope = saturation_slope
-    if limits.saturation != limits.yielding:
-        law = voce(model, limits)
-        a_slope = -yield_slope / model.p
-        b_slope = (saturation_slope - yield_slope - law.b * a_slope) / law.a
-        decay_slope = -law.decay * (a_slope / law.a + (1.0 + 1.0 / law.phi) * b_slope)
-        gone = math.exp(-law.decay * state.plastic_strain)
-        unsaturated = law.phi * math.exp(-law.b) * gone
-        growth = math.exp(-law.b) * gone * b_slope - unsaturated * state.plastic_strain * decay_slope
-        slope += a_slope * math.log(1.0 - unsaturated) - law.a * growth / (1.0 - unsaturated)
-    if rate.plastic > SHOCK_RATE:
-        slope = max(slope, model.beta * model.s0 * rate.relative**model.beta / rate.plastic)
+    law = voce(model, limits)
+    a_slope = -yield_slope / model.p
+    b_slope = (saturation_slope - yield_slope - law.b * a_slope) / law.a
+    decay_slope = -law.decay * (a_slope / law.a + (1.0 + 1.0 / law.phi) * b_slope)
+    gone = math.exp(-law.decay * state.plastic_strain)
+    unsaturated = law.phi * math.exp(-law.b) * gone
+    growth = math.exp(-law.b) * gone * b_slope - unsaturated * state.plastic_strain * decay_slope
+    missing = a_slope * math.log(1.0 - unsaturated) - law.a * growth / (1.0 - unsaturated)
+    slope = saturation_slope + where(law.hardens, missing, 0.0)
+    fast = rate.plastic > SHOCK_RATE
+    if anywhere(fast):
+        shock = model.beta * model.s0 * rate.relative**model.beta / rate.plastic
+        slope = where(fast, max(slope, shock), slope)
     return 2.0 * state.shear_modulus * slope

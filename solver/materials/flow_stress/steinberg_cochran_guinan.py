@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise, singly
+from solver.lanes import like
 from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -138,8 +139,16 @@ def bisected_stress(glide: Activation, rate: float) -> float:
 
 @inline
 def thermal_stress(model: SteinbergCochranGuinan, rate: float, temperature: float) -> float:
+    """Thermally activated stress at a plastic strain rate, where the model has any."""
+    if model.Peierls_stress == 0.0:
+        return like(0.0, rate)
+    return activated_stress(model, rate, temperature)
+
+
+@singly
+def activated_stress(model: SteinbergCochranGuinan, rate: float, temperature: float) -> float:
     """Thermally activated stress at a plastic strain rate, by Newton's iteration, else by bisection."""
-    if rate < LEAST_RATE or model.Peierls_stress == 0.0:
+    if rate < LEAST_RATE:
         return 0.0
     glide = activation(model, temperature)
     if rate > rate_at(glide, glide.peierls_stress).rate:
@@ -157,6 +166,7 @@ def thermal_stress(model: SteinbergCochranGuinan, rate: float, temperature: floa
 
 
 @implements(flow_stress, SteinbergCochranGuinan)
+@lanewise
 def _(model: SteinbergCochranGuinan, state: PlasticityState) -> float:
     hardened = model.sigma_0 * (1.0 + model.beta * (state.plastic_strain + model.epsilon_p0)) ** model.n
     thermal = thermal_stress(model, state.plastic_strain_rate, state.temperature)
@@ -164,6 +174,7 @@ def _(model: SteinbergCochranGuinan, state: PlasticityState) -> float:
 
 
 @implements(hardening_slope, SteinbergCochranGuinan)
+@lanewise
 def _(model: SteinbergCochranGuinan, state: PlasticityState) -> float:
     """Slope of the hardening law, also beyond ``Y_max``, as Uintah's iteration takes it."""
     hardened = 1.0 + model.beta * (state.plastic_strain + model.epsilon_p0)
@@ -172,6 +183,7 @@ def _(model: SteinbergCochranGuinan, state: PlasticityState) -> float:
 
 
 @implements(rate_slope, SteinbergCochranGuinan)
+@lanewise
 def _(model: SteinbergCochranGuinan, state: PlasticityState) -> float:
     """Difference quotient that Uintah's iteration takes: at a rate equal to the plastic strain.
 

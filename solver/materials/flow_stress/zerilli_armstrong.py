@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -59,7 +60,7 @@ class Thermal(NamedTuple):
 @inline
 def thermal_stress(model: ZerilliArmstrong, state: PlasticityState) -> Thermal:
     """The thermally activated parts at the state's plastic strain rate and temperature."""
-    rate = state.plastic_strain_rate if state.plastic_strain_rate != 0.0 else LEAST
+    rate = where(state.plastic_strain_rate != 0.0, state.plastic_strain_rate, LEAST)
     T = max(state.temperature, 0.0)
     alpha = model.alpha_0 - model.alpha_1 * math.log(rate)
     beta = model.beta_0 - model.beta_1 * math.log(rate)
@@ -67,6 +68,7 @@ def thermal_stress(model: ZerilliArmstrong, state: PlasticityState) -> Thermal:
 
 
 @implements(flow_stress, ZerilliArmstrong)
+@lanewise
 def _(model: ZerilliArmstrong, state: PlasticityState) -> float:
     strain = max(state.plastic_strain, 0.0)
     athermal = model.c_0 if model.c_0 != 0.0 else model.sigma_g + model.k_H * model.sqrt_l_inv
@@ -75,15 +77,17 @@ def _(model: ZerilliArmstrong, state: PlasticityState) -> float:
 
 
 @implements(hardening_slope, ZerilliArmstrong)
+@lanewise
 def _(model: ZerilliArmstrong, state: PlasticityState) -> float:
-    strain = state.plastic_strain if state.plastic_strain > 0.0 else LEAST
+    strain = where(state.plastic_strain > 0.0, state.plastic_strain, LEAST)
     thermal = thermal_stress(model, state)
     return model.K * model.n * strain ** (model.n - 1.0) + 0.5 * thermal.hardening / math.sqrt(strain)
 
 
 @implements(rate_slope, ZerilliArmstrong)
+@lanewise
 def _(model: ZerilliArmstrong, state: PlasticityState) -> float:
-    rate = state.plastic_strain_rate if state.plastic_strain_rate != 0.0 else LEAST
+    rate = where(state.plastic_strain_rate != 0.0, state.plastic_strain_rate, LEAST)
     T = max(state.temperature, 0.0)
     root = math.sqrt(max(state.plastic_strain, 0.0))
     thermal = thermal_stress(model, state)

@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -58,7 +59,7 @@ class Thermal(NamedTuple):
 @inline
 def thermal_stress(model: ZerilliArmstrongPolymer, state: PlasticityState) -> Thermal:
     """The thermally activated parts at the state's plastic strain rate, temperature and pressure."""
-    rate = state.plastic_strain_rate if state.plastic_strain_rate != 0.0 else LEAST_RATE
+    rate = where(state.plastic_strain_rate != 0.0, state.plastic_strain_rate, LEAST_RATE)
     root = math.sqrt(max(-state.mean_stress, 0.0))
     warmer = state.temperature - model.T_0
     alpha = model.alpha_0 - model.alpha_1 * math.log(rate)
@@ -72,6 +73,7 @@ def thermal_stress(model: ZerilliArmstrongPolymer, state: PlasticityState) -> Th
 
 
 @implements(flow_stress, ZerilliArmstrongPolymer)
+@lanewise
 def _(model: ZerilliArmstrongPolymer, state: PlasticityState) -> float:
     thermal = thermal_stress(model, state)
     hardening = thermal.hardening * math.sqrt(thermal.omega * state.plastic_strain)
@@ -79,16 +81,18 @@ def _(model: ZerilliArmstrongPolymer, state: PlasticityState) -> float:
 
 
 @implements(hardening_slope, ZerilliArmstrongPolymer)
+@lanewise
 def _(model: ZerilliArmstrongPolymer, state: PlasticityState) -> float:
     thermal = thermal_stress(model, state)
-    strain = state.plastic_strain if state.plastic_strain > 0.0 else LEAST_STRAIN
+    strain = where(state.plastic_strain > 0.0, state.plastic_strain, LEAST_STRAIN)
     return 0.5 * thermal.hardening * math.sqrt(thermal.omega / strain)
 
 
 @implements(rate_slope, ZerilliArmstrongPolymer)
+@lanewise
 def _(model: ZerilliArmstrongPolymer, state: PlasticityState) -> float:
     """Slope with omega held, as Uintah takes it."""
     thermal = thermal_stress(model, state)
-    strain = state.plastic_strain if state.plastic_strain > 0.0 else LEAST_STRAIN
+    strain = where(state.plastic_strain > 0.0, state.plastic_strain, LEAST_STRAIN)
     hardening = model.alpha_1 * thermal.hardening * math.sqrt(thermal.omega * strain)
     return (model.beta_1 * thermal.base + hardening) * (state.temperature - model.T_0) / thermal.rate
