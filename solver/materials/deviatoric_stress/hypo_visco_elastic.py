@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Annotated, Any, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import like, where
 from solver.materials.deviatoric_stress import relax, stress_increment
 from solver.tensor import Tensor, double_dot, isotropic, norm, put_tensor, tensor_at
 
@@ -34,6 +35,7 @@ class HypoViscoElasticDeviator(NamedTuple):
 
 
 @implements(stress_increment, HypoViscoElasticDeviator)
+@lanewise
 def _(
     model: HypoViscoElasticDeviator, elements: Any, p: int, rate: Tensor, shear_modulus: float, dt: float
 ) -> Tensor:
@@ -41,21 +43,20 @@ def _(
     for j in range(len(model.tau)):
         elastic = 2.0 * model.mu[j] * rate
         relaxing = elastic - tensor_at(elements[j], p) * (1.0 / model.tau[j])
-        if norm(relaxing) > STEADY * norm(elastic):
-            stress_rate = stress_rate + relaxing
+        changes = norm(relaxing) > STEADY * norm(elastic)
+        stress_rate = stress_rate + where(changes, relaxing, isotropic(0.0))
     return stress_rate * dt
 
 
 @implements(relax, HypoViscoElasticDeviator)
+@lanewise
 def _(
     model: HypoViscoElasticDeviator, elements: Any, p: int, melted: bool, elastic_rate: Tensor, dt: float
 ) -> float:
-    power = 0.0
-    if melted:
-        return power
+    power = like(0.0, elastic_rate.xx)
     for j in range(len(model.tau)):
-        stress = tensor_at(elements[j], p)
-        stress = stress + (2.0 * model.mu[j] * elastic_rate - stress * (1.0 / model.tau[j])) * dt
+        old = tensor_at(elements[j], p)
+        stress = old + (2.0 * model.mu[j] * elastic_rate - old * (1.0 / model.tau[j])) * dt
         power += double_dot(stress, stress) / (2.0 * model.mu[j] * model.tau[j])
-        put_tensor(elements[j], p, stress)
-    return power
+        put_tensor(elements[j], p, where(melted, old, stress))
+    return where(melted, 0.0, power)

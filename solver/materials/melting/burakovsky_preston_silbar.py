@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.melting import melting_temperature
 from solver.materials.plasticity_state import PlasticityState
 
@@ -35,6 +35,7 @@ class BurakovskyPrestonSilbarMelting(NamedTuple):
 
 
 @implements(melting_temperature, BurakovskyPrestonSilbarMelting)
+@lanewise
 def _(model: BurakovskyPrestonSilbarMelting, state: PlasticityState) -> float:
     p = -state.mean_stress
     atomic_volume = model.a**3.0 / model.v_ws_a3_factor

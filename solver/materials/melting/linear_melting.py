@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.melting import melting_temperature
 from solver.materials.plasticity_state import PlasticityState
 
@@ -36,6 +36,7 @@ class LinearMelting(NamedTuple):
 
 
 @implements(melting_temperature, LinearMelting)
+@lanewise
 def _(model: LinearMelting, state: PlasticityState) -> float:
     pressure = -state.mean_stress
     if model.a != NOT_GIVEN and model.K_T != NOT_GIVEN:

@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.melting import melting_temperature
 from solver.materials.plasticity_state import PlasticityState
 
@@ -24,6 +24,7 @@ class SteinbergCochranGuinanMelting(NamedTuple):
 
 
 @implements(melting_temperature, SteinbergCochranGuinanMelting)
+@lanewise
 def _(model: SteinbergCochranGuinanMelting, state: PlasticityState) -> float:
     eta = state.density / state.initial_density
     power = 2.0 * (model.Gamma_0 - model.a - 1.0 / 3.0)

@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import where
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.shear_modulus import shear_modulus
 
@@ -24,7 +25,8 @@ class MechanicalThresholdShear(NamedTuple):
 
 
 @implements(shear_modulus, MechanicalThresholdShear)
+@lanewise
 def _(model: MechanicalThresholdShear, state: PlasticityState) -> float:
-    if state.temperature * COLDEST < model.T_0:
-        return model.mu_0
-    return model.mu_0 - model.D / (math.exp(model.T_0 / state.temperature) - 1.0)
+    cold = state.temperature * COLDEST < model.T_0
+    T = where(cold, model.T_0, state.temperature)
+    return model.mu_0 - where(cold, 0.0, model.D / (math.exp(model.T_0 / T) - 1.0))

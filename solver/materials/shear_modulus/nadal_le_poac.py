@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import where
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.shear_modulus import shear_modulus
 
@@ -33,16 +34,14 @@ class NadalLePoacShear(NamedTuple):
 
 
 @implements(shear_modulus, NadalLePoacShear)
+@lanewise
 def _(model: NadalLePoacShear, state: PlasticityState) -> float:
     t = state.temperature / state.melt_temperature
-    if t <= 0.0:
-        return model.mu_0
-    if t > 1.0 + model.zeta:
-        return LEAST
-    width = model.zeta * (1.0 - t / (1.0 + model.zeta))
-    if t - 1.0 > LARGEST_EXPONENT * width:
-        return LEAST
+    width = model.zeta * (1.0 - t / (1.0 + model.zeta))  # negative for t > 1 + zeta
+    gone = t - 1.0 > LARGEST_EXPONENT * width
+    exponent = where(gone, 0.0, (t - 1.0) / where(gone, 1.0, width))
     eta = state.density / state.initial_density
     cold = model.mu_0 * (1.0 - model.slope_mu_p_over_mu0 * state.mean_stress / eta ** (1.0 / 3.0))
     thermal = state.density * GAS_CONSTANT * state.temperature / (model.C * model.m)
-    return max((cold * (1.0 - t) + thermal) / (1.0 + math.exp((t - 1.0) / width)), LEAST)
+    warm = max((cold * (1.0 - t) + thermal) / (1.0 + math.exp(exponent)), LEAST)
+    return where(t <= 0.0, model.mu_0, where(gone, LEAST, warm))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.shear_modulus import shear_modulus
 
@@ -24,6 +24,7 @@ class PrestonTonksWallaceShear(NamedTuple):
 
 
 @implements(shear_modulus, PrestonTonksWallaceShear)
+@lanewise
 def _(model: PrestonTonksWallaceShear, state: PlasticityState) -> float:
     eta = state.density / state.initial_density
     compressed = 1.0 - model.slope_mu_p_over_mu0 * state.mean_stress / eta ** (1.0 / 3.0)

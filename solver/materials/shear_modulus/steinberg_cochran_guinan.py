@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.shear_modulus import shear_modulus
 
@@ -26,6 +26,7 @@ class SteinbergCochranGuinanShear(NamedTuple):
 
 
 @implements(shear_modulus, SteinbergCochranGuinanShear)
+@lanewise
 def _(model: SteinbergCochranGuinanShear, state: PlasticityState) -> float:
     eta = state.density / state.initial_density
     pressure = -state.mean_stress

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import where
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.specific_heat import specific_heat
 
@@ -27,8 +28,8 @@ class CopperSpecificHeat(NamedTuple):
 
 
 @implements(specific_heat, CopperSpecificHeat)
+@lanewise
 def _(model: CopperSpecificHeat, state: PlasticityState) -> float:
     T = state.temperature
-    if state.temperature < model.T_transition:
-        return model.A_LowT * (T * T * T) - model.B_LowT * (T * T) + model.C_LowT * T - model.D_LowT
-    return model.A_HighT * T + model.B_HighT
+    cold = model.A_LowT * (T * T * T) - model.B_LowT * (T * T) + model.C_LowT * T - model.D_LowT
+    return where(model.T_transition > T, cold, model.A_HighT * T + model.B_HighT)

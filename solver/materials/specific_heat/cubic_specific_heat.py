@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.specific_heat import specific_heat
 
@@ -30,9 +30,10 @@ class CubicSpecificHeat(NamedTuple):
 
 
 @implements(specific_heat, CubicSpecificHeat)
+@lanewise
 def _(model: CubicSpecificHeat, state: PlasticityState) -> float:
     eta = state.density / state.initial_density
     t = state.temperature / (eta**model.a * math.exp(model.b * (eta - 1.0)))
-    at_constant_volume = t**3 / (model.c0 + t * (model.c1 + t * (model.c2 + t * model.c3)))
+    at_constant_volume = t * t * t / (model.c0 + t * (model.c1 + t * (model.c2 + t * model.c3)))
     expansion = model.beta * model.beta * state.temperature * state.bulk_modulus / state.density
     return at_constant_volume + expansion

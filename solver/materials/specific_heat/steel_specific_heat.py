@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import everywhere, where
 from solver.materials.plasticity_state import PlasticityState
 from solver.materials.specific_heat import specific_heat
 
@@ -32,9 +33,14 @@ class SteelSpecificHeat(NamedTuple):
 
 
 @implements(specific_heat, SteelSpecificHeat)
+@lanewise
 def _(model: SteelSpecificHeat, state: PlasticityState) -> float:
-    T = state.temperature - 1.0 if state.temperature == model.T_transition else state.temperature
+    T = state.temperature
+    T = where(model.T_transition == T, T - 1.0, T)
     t = T / model.T_transition - 1.0
-    if t < 0.0:
-        return model.A_LowT + model.B_LowT * t + model.C_LowT / (-t) ** model.n_LowT
-    return model.A_HighT + model.B_HighT * t + model.C_HighT / t**model.n_HighT
+    low = t < 0.0
+    heat = model.A_LowT + model.B_LowT * t + model.C_LowT / abs(t) ** model.n_LowT
+    if not everywhere(low):
+        high = model.A_HighT + model.B_HighT * t + model.C_HighT / abs(t) ** model.n_HighT
+        heat = where(low, heat, high)
+    return heat

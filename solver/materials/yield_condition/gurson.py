@@ -6,7 +6,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.lanes import where
 from solver.materials.yield_condition import YieldValue, hardening_term, yield_normal, yield_value
 from solver.tensor import Tensor, deviator, double_dot, isotropic, trace
@@ -45,19 +45,20 @@ def triaxiality(condition: Gurson, stress_trace: float, flow_stress: float) -> f
 
 
 @implements(yield_value, Gurson)
+@lanewise
 def _(
     condition: Gurson, equivalent_stress: float, stress_trace: float, flow_stress: float, porosity: float
 ) -> YieldValue:
     f = effective_porosity(condition, porosity)
     x = triaxiality(condition, stress_trace, flow_stress)
     reduction = 1.0 + condition.q3 * f * f - 2.0 * condition.q1 * f * math.cosh(x)
-    if reduction < 0.0:
-        reduction = 1.0
+    reduction = where(reduction < 0.0, 1.0, reduction)
     strength2 = flow_stress * flow_stress * reduction
     return YieldValue(equivalent_stress * equivalent_stress - strength2, math.sqrt(strength2))
 
 
 @implements(yield_normal, Gurson)
+@lanewise
 def _(condition: Gurson, stress: Tensor, flow_stress: float, porosity: float) -> Tensor:
     f = effective_porosity(condition, porosity)
     x = triaxiality(condition, trace(stress), flow_stress)
@@ -66,6 +67,7 @@ def _(condition: Gurson, stress: Tensor, flow_stress: float, porosity: float) ->
 
 
 @implements(hardening_term, Gurson)
+@lanewise
 def _(
     condition: Gurson,
     stress: Tensor,
@@ -81,10 +83,10 @@ def _(
     """
     f = effective_porosity(condition, porosity)
     x = triaxiality(condition, trace(stress), flow_stress)
-    opening = condition.k if porosity > condition.f_c else 1.0
+    opening = where(porosity > condition.f_c, condition.k, 1.0)
     strain_rate = double_dot(stress, normal) / ((1.0 - porosity) * flow_stress)
     porosity_rate = (1.0 - porosity) * trace(normal) + nucleation * strain_rate
-    by_porosity = 2.0 * flow_stress**2 * opening * (condition.q1 * math.cosh(x) - condition.q3 * f)
+    by_porosity = 2.0 * flow_stress * flow_stress * opening * (condition.q1 * math.cosh(x) - condition.q3 * f)
     by_flow_stress = -condition.q1 * f * condition.q2 * trace(stress) * math.sinh(x)
     by_flow_stress += 2.0 * flow_stress * (2.0 * condition.q1 * f * math.cosh(x) - 1.0 - condition.q3 * f * f)
     return by_porosity * porosity_rate + by_flow_stress * slope * strain_rate

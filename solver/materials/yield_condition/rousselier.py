@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.yield_condition import YieldValue, hardening_term, yield_normal, yield_value
 from solver.tensor import Tensor, deviator, double_dot, isotropic, norm, trace
 
@@ -33,27 +34,30 @@ def void_stress(condition: Rousselier, mean_stress: float, porosity: float) -> f
 
 
 @implements(yield_value, Rousselier)
+@lanewise
 def _(
     condition: Rousselier, equivalent_stress: float, stress_trace: float, flow_stress: float, porosity: float
 ) -> YieldValue:
     left = flow_stress - porosity * void_stress(condition, stress_trace / 3.0, porosity)
-    if left < 0.0:
-        left = flow_stress
+    left = where(left < 0.0, flow_stress, left)
     strength = (1.0 - porosity) * left
     return YieldValue(equivalent_stress * equivalent_stress - strength * strength, strength)
 
 
 @implements(yield_normal, Rousselier)
+@lanewise
 def _(condition: Rousselier, stress: Tensor, flow_stress: float, porosity: float) -> Tensor:
     s = deviator(stress)
     sound = 1.0 - porosity
     voids = void_stress(condition, trace(stress) / 3.0, porosity) * porosity / (3.0 * condition.sig_1 * sound)
     size = norm(s)
-    shear = math.sqrt(1.5) / (sound * size) if size > 0.0 else 0.0
+    sheared = size > 0.0
+    shear = where(sheared, math.sqrt(1.5) / (sound * where(sheared, size, 1.0)), 0.0)
     return shear * s + isotropic(voids)
 
 
 @implements(hardening_term, Rousselier)
+@lanewise
 def _(
     condition: Rousselier,
     stress: Tensor,
