@@ -41,7 +41,9 @@ def generic_with_default(function: Function) -> Function:
 def _declare(function: Function, default: Callable[..., Any] | None) -> Function:
     implementations: dict[type, Callable[..., Any]] = {}
 
-    @functools.wraps(function)
+    @functools.wraps(
+        function, updated=()
+    )  # a default that takes lanes does not speak for the bodies of models
     def call(model: Any, *args: Any) -> Any:
         body = implementations.get(type(model), default)
         if body is None:
