@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import like
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -52,6 +53,7 @@ def _(model: ArrudaBoyce8, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, ArrudaBoyce8)
+@lanewise
 def arruda_boyce_stress(
     model: ArrudaBoyce8, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -61,11 +63,12 @@ def arruda_boyce_stress(
     J = determinant(F)
     b = (F @ F.T) * J ** (-2.0 / 3.0)
     u, u_rest = trace(b) / beta2, 3.0 / beta2
-    stiffening = 0.0
-    energy = 0.0
+    stiffening, energy = like(0.0, u), like(0.0, u)
+    power, power_at_rest = like(1.0, u), 1.0
     for k in range(len(SERIES)):
-        stiffening += SERIES[k] * u**k
-        energy += SERIES[k] * (u ** (k + 1) - u_rest ** (k + 1)) / (k + 1)
+        stiffening += SERIES[k] * power
+        power, power_at_rest = power * u, power_at_rest * u_rest
+        energy += SERIES[k] * (power - power_at_rest) / (k + 1)
     energy = 0.5 * G * beta2 * energy + 0.5 * K * (0.5 * (J * J - 1.0) - math.log(J))
     density = material.density / J
     return StressUpdate(

@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -46,6 +46,7 @@ def _(model: CnhMms, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, CnhMms)
+@lanewise
 def cnh_mms_stress(
     model: CnhMms, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

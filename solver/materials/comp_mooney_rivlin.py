@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -59,6 +59,7 @@ def _(model: CompMooneyRivlin, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, CompMooneyRivlin)
+@lanewise
 def mooney_rivlin_stress(
     model: CompMooneyRivlin, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -82,8 +83,10 @@ def mooney_rivlin_stress(
     density = point.mass / point.volume
     distortional = 4.0 * (C1 + C2 * I2) / J
     volumetric = 8.0 * (2.0 * C3 / (I3 * I3 * I3) + C4 * (2.0 * I3 - 1.0))
-    least_stress = min(stress.xx, stress.yy, stress.zz)
-    energy = C1 * (I1 - 3.0) + C2 * (I2 - 3.0) + C3 * (1.0 / (I3 * I3) - 1.0) + C4 * (I3 - 1.0) ** 2
+    least_stress = min(stress.xx, stress.yy)
+    least_stress = min(least_stress, stress.zz)
+    energy = C1 * (I1 - 3.0) + C2 * (I2 - 3.0) + C3 * (1.0 / (I3 * I3) - 1.0)
+    energy += C4 * (I3 - 1.0) * (I3 - 1.0)
     return StressUpdate(
         stress=stress,
         sound_speed=math.sqrt((distortional + volumetric - least_stress / J) / density),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -49,6 +49,7 @@ def _(model: GaoElastic, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, GaoElastic)
+@lanewise
 def gao_elastic_stress(
     model: GaoElastic, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

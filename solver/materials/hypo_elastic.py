@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -44,6 +44,7 @@ def _(model: HypoElastic, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, HypoElastic)
+@lanewise
 @inline
 def hypo_elastic_stress(
     model: HypoElastic, state: Any, p: int, point: Point, material: Material, step: Step

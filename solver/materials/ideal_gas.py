@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import where
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -43,6 +44,7 @@ def _(model: IdealGas, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, IdealGas)
+@lanewise
 def ideal_gas_stress(
     model: IdealGas, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -52,10 +54,10 @@ def ideal_gas_stress(
     density = material.density / J
     pressure_over_density = (model.gamma - 1.0) * model.specific_heat * point.temperature
     pressure = density * pressure_over_density
-    viscous_pressure = 0.0
     rate = trace(point.velocity_gradient)
-    if step.artificial_viscosity and rate < 0.0:
-        viscous_pressure = density * (SHOCK_WIDTH * step.length * rate) ** 2
+    jump = SHOCK_WIDTH * step.length * rate
+    compressed = (rate < 0.0) & step.artificial_viscosity
+    viscous_pressure = where(compressed, density * jump * jump, 0.0)
     return StressUpdate(
         stress=isotropic(model.Pref - pressure),
         sound_speed=math.sqrt(model.gamma * pressure_over_density),

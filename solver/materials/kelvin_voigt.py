@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -65,6 +65,7 @@ def _(model: KelvinVoigt, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, KelvinVoigt)
+@lanewise
 def kelvin_voigt_stress(
     model: KelvinVoigt, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

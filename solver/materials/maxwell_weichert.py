@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -88,6 +88,7 @@ def _(model: MaxwellWeichert, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, MaxwellWeichert)
+@lanewise
 def maxwell_weichert_stress(
     model: MaxwellWeichert, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

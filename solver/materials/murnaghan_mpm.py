@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -47,6 +47,7 @@ def _(model: MurnaghanMPM, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, MurnaghanMPM)
+@lanewise
 def murnaghan_stress(
     model: MurnaghanMPM, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

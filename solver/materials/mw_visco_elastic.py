@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -75,6 +75,7 @@ def _(model: MWViscoElastic, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, MWViscoElastic)
+@lanewise
 def standard_solid_stress(
     model: MWViscoElastic, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -101,10 +102,11 @@ def standard_solid_stress(
     put_tensor(state.viscous_deviator, p, s)
     state.elastic_pressure[p] = elastic_pressure
     state.viscous_pressure[p] = pressure
+    total_pressure = elastic_pressure + pressure
     stored = (
         double_dot(s, s) / (4.0 * G_v)
         + double_dot(elastic_deviator, elastic_deviator) / (4.0 * G_e)
-        + (elastic_pressure + pressure) ** 2 / (2.0 * (K_v + K_e))
+        + total_pressure * total_pressure / (2.0 * (K_v + K_e))
     )
     dissipated = double_dot(s, s) / eta_d * dt
     density = material.density / determinant(point.deformation_gradient_old)

@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, like, negation, where
 from solver.materials.comp_neo_hook import radial_return
 from solver.materials.constitutive import (
     Material,
@@ -111,33 +112,35 @@ def porous_pressure(model: PAlpha, initial_density: float, alpha: float, least_a
     alpha_P = alpha_0 * (1.0 - model.Pe / model.K0)
     solid_speed = math.sqrt(model.Ks / model.rhoS)
     loading = alpha <= least_alpha
-    elastic = alpha > alpha_P if loading else alpha >= alpha_P and least_alpha >= alpha_P
+    elastic = where(loading, alpha > alpha_P, (alpha >= alpha_P) & (least_alpha >= alpha_P))
     density = model.rhoS / alpha
-    if elastic:
-        pressure = model.K0 * (1.0 - initial_density / density)
-        return Compaction(pressure, math.sqrt(model.K0 / density), False)
     porous_speed = math.sqrt(model.K0 / initial_density)
     speed = solid_speed + (porous_speed - solid_speed) * (alpha - 1.0) / (alpha_0 - 1.0)
-    pressure = model.Ps - (model.Ps - model.Pe) * math.sqrt((alpha - 1.0) / (alpha_P - 1.0))
-    if not loading:
-        h = speed / solid_speed
-        compliance = min(alpha * alpha / model.Ks * (1.0 - 1.0 / (h * h)), -1.0 / model.Ks)
-        pressure += (alpha - least_alpha) / compliance
-    return Compaction(pressure, speed, loading)
+    crushed = where(elastic, 0.0, (alpha - 1.0) / (alpha_P - 1.0))
+    pressure = model.Ps - (model.Ps - model.Pe) * math.sqrt(crushed)
+    h = speed / solid_speed
+    compliance = min(alpha * alpha / model.Ks * (1.0 - 1.0 / (h * h)), -1.0 / model.Ks)
+    pressure += where(loading, 0.0, (alpha - least_alpha) / compliance)
+    return Compaction(
+        where(elastic, model.K0 * (1.0 - initial_density / density), pressure),
+        where(elastic, math.sqrt(model.K0 / density), speed),
+        loading & negation(elastic),
+    )
 
 
 @inline
 def solid_pressure(model: PAlpha, density: float, specific_heat: float, warming: float) -> float:
     """Pressure of the dense solid, ``warming`` being its temperature above that of closing."""
     pressure = model.Ps + model.Gamma_0 * specific_heat * warming * model.rhoS
-    if density != model.rhoS:
-        inverse = 1.0 / (density / model.rhoS - 1.0)
-        rise = model.rhoS * model.C_0**2 * (inverse + 1.0 - 0.5 * model.Gamma_0)
-        pressure += rise / (inverse - (model.S_alpha - 1.0)) ** 2
-    return pressure
+    changed = density != model.rhoS
+    inverse = 1.0 / where(changed, density / model.rhoS - 1.0, 1.0)
+    rise = model.rhoS * model.C_0**2 * (inverse + 1.0 - 0.5 * model.Gamma_0)
+    slope = inverse - (model.S_alpha - 1.0)
+    return pressure + where(changed, rise / (slope * slope), 0.0)
 
 
 @implements(stress_update, PAlpha)
+@lanewise
 def p_alpha_stress(
     model: PAlpha, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -152,24 +155,30 @@ def p_alpha_stress(
     state.least_alpha[p] = least
     rate = trace(point.velocity_gradient)
 
-    pressure, heating = 0.0, 0.0
-    sound_speed = math.sqrt(model.Ks / model.rhoS)
-    closing_temperature = state.closing_temperature[p]
-    if 1.0 <= alpha < alpha_0:
-        porous = porous_pressure(model, material.density, alpha, old_least)
-        pressure, sound_speed = porous.pressure, porous.sound_speed
-        if porous.crushing:
-            dilatation = J / determinant(point.deformation_gradient_old) - 1.0
-            heating = -pressure * dilatation / (density * material.specific_heat * step.dt)
-        state.closing_temperature[p] = point.temperature
-    if least < 1.0:
-        warming = point.temperature - closing_temperature
-        pressure = solid_pressure(model, density, material.specific_heat, warming)
-        heating -= point.temperature * model.Gamma_0 * model.rhoS * rate / density
-        state.closing_temperature[p] = closing_temperature
-    if alpha > alpha_0 or pressure < 0.0:
-        tension_modulus = model.Ku if model.Ku > 0.0 else 0.1 * model.K0
-        pressure = tension_modulus * (1.0 - min(model.rhoS, model.rhoS / least) / density)
+    pressure, heating = like(0.0, alpha), like(0.0, alpha)
+    sound_speed = like(math.sqrt(model.Ks / model.rhoS), alpha)
+    old_closing_temperature = state.closing_temperature[p]
+    closing_temperature = old_closing_temperature
+    porous = (alpha >= 1.0) & (alpha < alpha_0)
+    if anywhere(porous):
+        compaction = porous_pressure(model, material.density, alpha, old_least)
+        pressure = where(porous, compaction.pressure, pressure)
+        sound_speed = where(porous, compaction.sound_speed, sound_speed)
+        dilatation = J / determinant(point.deformation_gradient_old) - 1.0
+        crushing = -pressure * dilatation / (density * material.specific_heat * step.dt)
+        heating = where(porous & compaction.crushing, crushing, heating)
+        closing_temperature = where(porous, point.temperature, closing_temperature)
+    closed = least < 1.0
+    if anywhere(closed):
+        warming = point.temperature - old_closing_temperature
+        solid = solid_pressure(model, density, material.specific_heat, warming)
+        pressure = where(closed, solid, pressure)
+        heating -= where(closed, point.temperature * model.Gamma_0 * model.rhoS * rate / density, 0.0)
+        closing_temperature = where(closed, old_closing_temperature, closing_temperature)
+    state.closing_temperature[p] = closing_temperature
+    tension_modulus = model.Ku if model.Ku > 0.0 else 0.1 * model.K0
+    tension = tension_modulus * (1.0 - min(model.rhoS, model.rhoS / least) / density)
+    pressure = where((alpha > alpha_0) | (pressure < 0.0), tension, pressure)
     shear = radial_return(state, p, point, model.shear_modulus, model.yield_stress, model.hardening_modulus)
     return StressUpdate(
         stress=shear.kirchhoff / J - isotropic(pressure),

@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import like
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -139,6 +140,7 @@ class SwellingElasticPlastic(NamedTuple):
 
 
 @implements(plastic_strain_rate, SwellingElasticPlastic)
+@lanewise
 def _(model: SwellingElasticPlastic, state: Any, p: int) -> float:
     return state.plastic_strain_rate[p]
 
@@ -159,6 +161,7 @@ def _(
 @inline
 def at_temperature(point: Point, temperature: float) -> Point:
     """The particle at another temperature."""
+    temperature = like(temperature, point.temperature)
     return Point(
         point.stress,
         point.deformation_gradient_old,
@@ -174,6 +177,7 @@ def at_temperature(point: Point, temperature: float) -> Point:
 
 
 @implements(stress_update, SwellingElasticPlastic)
+@lanewise
 def swelling_metal_stress(
     model: SwellingElasticPlastic, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -50,6 +50,7 @@ def _(model: Rigid, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, Rigid)
+@lanewise
 def rigid_stress(
     model: Rigid, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

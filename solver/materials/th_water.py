@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -62,6 +62,7 @@ def _(model: THWater, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, THWater)
+@lanewise
 def th_water_stress(
     model: THWater, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import generic, implements
+from solver.dispatch import generic, implements, lanewise
 from solver.materials.comp_neo_hook import (
     InitialPressure,
     InitialStress,
@@ -127,12 +127,14 @@ def variable_response(  # type: ignore[empty-body]  # bodies follow, one for eac
 
 
 @implements(variable_response, VariableElasticState)
+@lanewise
 def variable_elastic_response(state: Any, p: int, point: Point) -> Isochoric:
     """The response of a material that cannot yield."""
     return elastic_shear(state.shear_modulus[p], point.deformation_gradient)
 
 
 @implements(variable_response, VariablePlasticState)
+@lanewise
 def variable_plastic_response(state: Any, p: int, point: Point) -> Isochoric:
     """The response of a material that can."""
     return radial_return(
@@ -141,6 +143,7 @@ def variable_plastic_response(state: Any, p: int, point: Point) -> Isochoric:
 
 
 @implements(stress_update, UCNHVar)
+@lanewise
 def variable_neo_hookean_stress(
     model: UCNHVar, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, everywhere, like, where
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -205,12 +206,19 @@ class CrackGrowth(NamedTuple):
 @inline
 def limiting_crack_speed(model: ViscoScram, effective_rate: float, tension: bool) -> float:
     """Speed that a crack approaches far above the threshold of stress intensity."""
-    if effective_rate <= RESTING_RATE:
-        return 0.0
-    speed = math.exp(GROWTH_EXPONENT * math.log(effective_rate) + GROWTH_FACTOR)
-    if tension:
-        speed *= model.CrackGrowthRate
-    return min(speed, model.CrackMaxGrowthRate)
+    rests = effective_rate <= RESTING_RATE
+    speed = math.exp(GROWTH_EXPONENT * math.log(where(rests, 1.0, effective_rate)) + GROWTH_FACTOR)
+    speed *= where(tension, model.CrackGrowthRate, 1.0)
+    return where(rests, 0.0, min(speed, model.CrackMaxGrowthRate))
+
+
+@inline
+def growth_speed(slow: bool, limit: float, scale: float, power: float, arrest: float, radius: float) -> float:
+    """Speed of a crack of some radius, below the transition or above it."""
+    speed = limit * (1.0 - arrest / radius)
+    if anywhere(slow):
+        speed = where(slow, limit * (scale * math.sqrt(radius)) ** power, speed)
+    return speed
 
 
 @inline
@@ -224,31 +232,22 @@ def crack_growth(
     tension = mean_stress > 0.0
     limit = limiting_crack_speed(model, rate, tension)
     root = math.sqrt(radius)
-    driving = deviator_squared
-    friction = 0.0
-    if tension:
-        driving += 3.0 * mean_stress * mean_stress
-    else:
-        mu = model.CrackFriction
-        friction = -math.sqrt(45.0 / (2.0 * (3.0 - 2.0 * mu * mu))) * mu * mean_stress * root
+    driving = deviator_squared + where(tension, 3.0 * mean_stress * mean_stress, 0.0)
+    mu = model.CrackFriction
+    rubbing = -math.sqrt(45.0 / (2.0 * (3.0 - 2.0 * mu * mu))) * mu * mean_stress * root
+    friction = where(tension, 0.0, rubbing)
     intensity = math.sqrt(1.5 * math.pi * driving) * root
     K_0, m = model.StressIntensityF, model.CrackPowerValue
     threshold = K_0 * math.sqrt(1.0 + math.pi * friction * (1.0 + friction / K_0) / K_0)
     transition = threshold * math.sqrt(1.0 + 2.0 / m)
-    if intensity < transition:
-        scale = intensity / (transition * (1.0 + 0.5 * m) ** (1.0 / m) * root)
-        speed = limit * (scale * root) ** m
-        first = speed * dt
-        second = limit * (scale * math.sqrt(radius + 0.5 * first)) ** m * dt
-        third = limit * (scale * math.sqrt(radius + 0.5 * second)) ** m * dt
-        fourth = limit * (scale * math.sqrt(radius + third)) ** m * dt
-    else:
-        arrest = threshold * threshold * radius / (intensity * intensity)
-        speed = limit * (1.0 - arrest / radius)
-        first = speed * dt
-        second = limit * (1.0 - arrest / (radius + 0.5 * first)) * dt
-        third = limit * (1.0 - arrest / (radius + 0.5 * second)) * dt
-        fourth = limit * (1.0 - arrest / (radius + third)) * dt
+    scale = intensity / (transition * (1.0 + 0.5 * m) ** (1.0 / m) * root)
+    slow = intensity < transition
+    arrest = threshold * threshold * radius / where(slow, transition * transition, intensity * intensity)
+    speed = growth_speed(slow, limit, scale, m, arrest, radius)
+    first = speed * dt
+    second = growth_speed(slow, limit, scale, m, arrest, radius + 0.5 * first) * dt
+    third = growth_speed(slow, limit, scale, m, arrest, radius + 0.5 * second) * dt
+    fourth = growth_speed(slow, limit, scale, m, arrest, radius + third) * dt
     return CrackGrowth(speed, first, second, third, fourth)
 
 
@@ -268,7 +267,7 @@ class Elements(NamedTuple):
 def elements_of(model: ViscoScram, random: float, temperature: float) -> Elements:
     """Moduli scattered by the particle's random number, rates shifted by its temperature."""
     scatter = 1.0 + 0.4 * (random - 0.5)
-    shift = 1.0
+    shift = like(1.0, temperature)
     if model.use_time_temperature_equation:
         above = temperature - model.T0
         shift = math.exp(model.C1 * above / (model.C2 + above))
@@ -347,7 +346,8 @@ def relax(
     for k in range(ELEMENTS):
         modulus, rate = elements.moduli[k], elements.rates[k]
         old = tensor_at(stresses[k], p)
-        if model.use_time_temperature_equation and rate * dt > 0.1:
+        relaxed = (rate * dt > 0.1) & model.use_time_temperature_equation
+        if everywhere(relaxed):
             put_tensor(stresses[k], p, isotropic(0.0))
             continue
         stress = total_stress(stresses, p)
@@ -366,7 +366,7 @@ def relax(
             )
             stage = (2.0 * modulus * strain_rate - (old + trial) * rate - taken * (modulus / G)) * dt
             change = change + stage * (1.0 / 6.0 if i in (0, 3) else 1.0 / 3.0)
-        put_tensor(stresses[k], p, old + change)
+        put_tensor(stresses[k], p, where(relaxed, isotropic(0.0), old + change))
 
 
 @inline
@@ -393,14 +393,15 @@ def heating(
     ``heat_capacity`` is that of unit volume.
     """
     stresses = element_stresses(state)
-    viscous = 0.0
+    viscous = like(0.0, temperature)
     for k in range(ELEMENTS):
         s_k = tensor_at(stresses[k], p)
         viscous += double_dot(s_k, s_k) / (2.0 * elements.moduli[k]) * elements.rates[k]
     G = elements.shear_modulus
     radius = state.crack_radius[p]
     s = total_stress(stresses, p)
-    opened = (radius / model.CrackParameterA) ** 3
+    relative = radius / model.CrackParameterA
+    opened = relative * relative * relative
     growth = 3.0 * opened / radius * crack_speed
     relaxation = total_relaxation(stresses, elements.rates, p)
     stress_rate = (d * (2.0 * G) - s * growth - relaxation) * (1.0 / (1.0 + opened))
@@ -412,6 +413,7 @@ def heating(
 
 
 @implements(stress_update, ViscoScram)
+@lanewise
 def visco_scram_stress(
     model: ViscoScram, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

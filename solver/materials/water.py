@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.constitutive import (
     DELETE,
     Material,
@@ -65,15 +66,15 @@ def barotropic_update(
 
 
 @implements(stress_update, Water)
+@lanewise
 def water_stress(
     model: Water, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
     """The equation above, where the particle is sound."""
     J = determinant(point.deformation_gradient)
-    localized = point.localized
-    if not 0.0 < J <= LARGEST_EXPANSION:
-        localized = DELETE
-        J = 1.0
+    possible = (J > 0.0) & (J <= LARGEST_EXPANSION)
+    localized = where(possible, point.localized, DELETE)
+    J = where(possible, J, 1.0)
     return barotropic_update(
         model.bulk_modulus, model.viscosity, model.gamma, J, material.density / J, localized, point, step
     )

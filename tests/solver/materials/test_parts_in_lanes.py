@@ -1,0 +1,272 @@
+"""What materials are made of answers for eight particles at once as in plain Python for one after the other."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from test_arruda_boyce import RUBBER as ARRUDA_BOYCE
+from test_cnh_mms import MODEL as CNH_MMS
+from test_comp_mooney_rivlin import RUBBER as MOONEY_RIVLIN
+from test_hypo_elastic import MODEL as HYPO_ELASTIC
+from test_ideal_gas import AIR, GAS
+from test_kelvin_voigt import MODEL as KELVIN_VOIGT
+from test_maxwell_weichert import MODEL as MAXWELL_WEICHERT
+from test_model_exchange import COPPER, MODELS, TEMPERATURE, G, K
+from test_murnaghan_mpm import MODEL as MURNAGHAN
+from test_mw_visco_elastic import MODEL as MW_VISCO_ELASTIC
+from test_p_alpha import MODEL as POROUS
+from test_p_alpha import SAND
+from test_swelling import PLASTIC, silicon
+from test_th_water import MODEL as TH_WATER
+from test_th_water import WATER as TH_WATER_MATERIAL
+from test_ucnh_var import MODEL as UCNH_VAR
+from test_visco_scram import EXPLOSIVE, PBX
+from test_water import LIQUID, WATER
+
+from solver.dispatch import inline
+from solver.jit import kernel
+from solver.lanes import WIDTH, Eight
+from solver.materials.constitutive import Point, Step, initialize, state_record, stress_update
+from solver.materials.flow_stress import in_step, response
+from solver.materials.gao_elastic import GaoElastic
+from solver.materials.melting import melting_temperature
+from solver.materials.melting.linear_melting import LinearMelting
+from solver.materials.plasticity_state import PlasticityState
+from solver.materials.rigid import Rigid
+from solver.materials.shear_modulus import shear_modulus
+from solver.materials.specific_heat import specific_heat
+from solver.materials.yield_condition import hardening_term, yield_normal, yield_value
+from solver.particles import Particles, new_arrays
+from solver.tensor import put_tensor, tensor_at, trace
+
+ROUNDING = 2.0e-12
+"""Relative to the largest value among the eight."""
+
+
+class Parts(NamedTuple):
+    """One model of each family."""
+
+    flow_stress: Any
+    shear_modulus: Any
+    melting: Any
+    specific_heat: Any
+    yield_condition: Any
+
+
+@inline
+def properties(parts: Any, table: Any, stresses: Any, p: Any, answers: Any) -> None:
+    """All that the models say of a state, a row of ``table``."""
+    state = PlasticityState(
+        table[p, 0],
+        table[p, 1],
+        table[p, 2],
+        table[p, 3],
+        table[p, 4],
+        table[p, 5],
+        table[p, 6],
+        table[p, 7],
+        table[p, 8],
+        table[p, 9],
+        table[p, 10],
+        table[p, 11],
+    )
+    at = response(in_step(parts.flow_stress, state), state)
+    answers[p, 0] = at.flow_stress
+    answers[p, 1] = at.hardening_slope
+    answers[p, 2] = at.rate_slope * state.plastic_strain_rate  # what is left of differences, at rest
+    answers[p, 3] = shear_modulus(parts.shear_modulus, state)
+    answers[p, 4] = melting_temperature(parts.melting, state)
+    answers[p, 5] = specific_heat(parts.specific_heat, state)
+    stress, porosity = tensor_at(stresses, p), table[p, 12]
+    surface = yield_value(parts.yield_condition, 3.0e8, trace(stress), at.flow_stress, porosity)
+    normal = yield_normal(parts.yield_condition, stress, at.flow_stress, porosity)
+    answers[p, 6] = surface.function
+    answers[p, 7] = surface.strength
+    answers[p, 8] = normal.xx
+    answers[p, 9] = normal.xy
+    answers[p, 10] = hardening_term(
+        parts.yield_condition, stress, normal, at.flow_stress, at.hardening_slope, porosity, 0.3
+    )
+
+
+@kernel
+def properties_of_eight(parts, table, stresses, answers):
+    properties(parts, table, stresses, Eight(0), answers)
+
+
+NAMES = (
+    "flow_stress",
+    "hardening_slope",
+    "rate_slope times rate",
+    "shear_modulus",
+    "melting_temperature",
+    "specific_heat",
+    "yield function",
+    "strength",
+    "normal.xx",
+    "normal.xy",
+    "hardening_term",
+)
+
+
+def states() -> tuple[Any, Any]:
+    """Eight states and stresses: at rest, slow, shocked, cold, hot, molten, without strain, with many voids."""
+    rng = np.random.default_rng(7)
+    table = np.empty((WIDTH, 13))
+    table[:, 0] = 0.0, 1.0e-4, 0.02, 0.1, 0.3, 1.0, 0.5, 0.05
+    table[:, 1] = 0.0, 1.0e-3, 0.5, 20.0, 900.0, 4.0e3, 1.0e6, 1.0e9
+    table[:, 2] = 0.0, 2.0e-3, 0.7, 30.0, 1.0e3, 5.0e3, 2.0e6, 2.0e9
+    table[:, 3] = 294.0, 20.0, 269.0, 270.0, 600.0, 1040.0, 1300.0, 1500.0
+    table[:, 4] = rng.uniform(-2.0e9, 1.0e9, WIDTH)
+    table[:, 5] = COPPER.density * rng.uniform(0.95, 1.1, WIDTH)
+    table[:, 6] = COPPER.density
+    table[:, 7] = rng.uniform(0.0, 1.0e5, WIDTH)
+    table[:, 8], table[:, 9] = K, G
+    table[:, 10], table[:, 11] = COPPER.melt_temperature, COPPER.specific_heat
+    table[:, 12] = 0.0, 0.002, 0.01, 0.05, 0.1, 0.2, 0.4, 0.6
+    stresses = rng.normal(size=(WIDTH, 3, 3)) * 2.0e8
+    return table, stresses + stresses.transpose(0, 2, 1)
+
+
+LAWS = [
+    Parts(
+        flow,
+        MODELS["shear_modulus"][k % 5],
+        (*MODELS["melting"], LinearMelting(1356.0, a=1.5))[k % 5],
+        MODELS["specific_heat"][k % 4],
+        MODELS["yield_condition"][k % 3],
+    )
+    for k, flow in enumerate(MODELS["flow_stress"])
+]
+"""Every flow stress once, and with them every model of the other families."""
+
+
+@pytest.mark.parametrize("parts", LAWS, ids=lambda parts: type(parts.flow_stress).__name__)
+def test_properties_of_eight_particles(parts):
+    table, stresses = states()
+    answers, expected = np.zeros((2, WIDTH, len(NAMES)))
+    properties_of_eight(parts, table, stresses, answers)
+    for p in range(WIDTH):
+        single = table.tolist()[p]
+        properties(parts, {(p, k): value for k, value in enumerate(single)}, stresses, p, expected)
+    for k, name in enumerate(NAMES):
+        assert np.isfinite(expected[:, k]).all(), name
+        scale = np.abs(expected[:, k]).max()
+        np.testing.assert_allclose(
+            answers[:, k], expected[:, k], rtol=0.0, atol=ROUNDING * scale, err_msg=name
+        )
+
+
+@inline
+def respond(
+    model: Any, state: Any, particles: Any, before: Any, material: Any, step: Any, p: Any, answers: Any
+) -> None:
+    """A stress update; ``before`` holds deformation gradient and volume at its start."""
+    point = Point(
+        tensor_at(particles.stress, p),
+        tensor_at(before.deformation_gradient, p),
+        tensor_at(particles.deformation_gradient, p),
+        tensor_at(particles.velocity_gradient, p),
+        before.volume[p],
+        particles.volume[p],
+        particles.mass[p],
+        particles.temperature[p],
+        particles.previous_temperature[p],
+        particles.localized[p],
+    )
+    update = stress_update(model, state, p, point, material, step)
+    put_tensor(particles.stress, p, update.stress)
+    answers[p, 0] = update.sound_speed
+    answers[p, 1] = update.strain_energy
+    answers[p, 2] = update.heating_rate
+    answers[p, 3] = update.artificial_pressure
+    answers[p, 4] = update.localized
+
+
+@kernel
+def respond_all(model, state, particles, before, material, step, answers):
+    respond(model, state, particles, before, material, step, Eight(0), answers)
+
+
+class Before(NamedTuple):
+    """What a step starts from."""
+
+    deformation_gradient: Any
+    volume: Any
+
+
+MATERIALS: dict[str, tuple[Any, ...]] = {
+    "arruda_boyce": (ARRUDA_BOYCE, COPPER),
+    "cnh_mms": (CNH_MMS, COPPER),
+    "comp_mooney_rivlin": (MOONEY_RIVLIN, COPPER),
+    "gao_elastic": (GaoElastic(K, G, 0.1), COPPER),
+    "hypo_elastic": (HYPO_ELASTIC, COPPER),
+    "ideal_gas": (GAS, AIR),
+    "kelvin_voigt": (KELVIN_VOIGT, COPPER),
+    "maxwell_weichert": (MAXWELL_WEICHERT, COPPER),
+    "murnaghan": (MURNAGHAN, COPPER),
+    "mw_visco_elastic": (MW_VISCO_ELASTIC, COPPER),
+    "p_alpha": (POROUS._replace(shear_modulus=1.0e8, yield_stress=1.0e6), SAND),
+    "rf_elastic_plastic": (silicon(PLASTIC), COPPER),
+    "rigid": (Rigid(), COPPER),
+    "thermo_water": (TH_WATER, TH_WATER_MATERIAL, 0.02),
+    "ucnh_var": (UCNH_VAR._replace(usePlasticity=True), COPPER),
+    "visco_scram": (PBX._replace(use_time_temperature_equation=True, useObjectiveRate=True), EXPLOSIVE),
+    "water": (LIQUID, WATER),
+}
+RATES = np.array([0.0, 1.0e1, 1.0e3, 1.0e4, 3.0e4, 1.0e5, 1.5e5, 2.0e5])[:, None, None]
+
+
+class Octet:
+    """Eight particles, from one at rest to one that is crushed and let go."""
+
+    def __init__(self, model: Any, material: Any, slower: float = 1.0) -> None:
+        rng = np.random.default_rng(11)
+        self.model, self.material = model, material
+        self.particles: Any = new_arrays(Particles, WIDTH)
+        self.particles.volume[:], self.particles.mass[:] = 1.0e-9, material.density * 1.0e-9
+        self.particles.temperature[:] = self.particles.previous_temperature[:] = TEMPERATURE
+        self.particles.color[:] = rng.uniform(0.0, 2.0, WIDTH)
+        self.state: Any = new_arrays(state_record(model), WIDTH)
+        if type(model) in initialize.registry:
+            initialize(model, self.state, self.particles, material, np.zeros(WIDTH, np.int64))
+        self.rates = (rng.normal(size=(WIDTH, 3, 3)) * 0.7 - 0.5 * np.eye(3)) * RATES * slower
+        self.answers = np.zeros((WIDTH, 5))
+
+    def advance(self, step: Step, share: float, at_once: bool) -> None:
+        """Deform the particles by a share of their rates and ask for their stress."""
+        particles = self.particles
+        before = Before(particles.deformation_gradient.copy(), particles.volume.copy())
+        particles.velocity_gradient[:] = share * self.rates
+        increment = np.eye(3) + particles.velocity_gradient * step.dt
+        particles.deformation_gradient[:] = increment @ before.deformation_gradient
+        particles.volume[:] = before.volume * np.linalg.det(increment)
+        given = (self.model, self.state, particles, before, self.material, step)
+        if at_once:
+            respond_all(*given, self.answers)
+        else:
+            for p in range(WIDTH):
+                respond(*given, p, self.answers)
+        particles.previous_temperature[:] = particles.temperature
+        particles.temperature[:] += np.arange(WIDTH)
+
+    @property
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All that is known of the particles, by name."""
+        return {**self.state._asdict(), "stress": self.particles.stress, "answers": self.answers.T}
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_materials_of_eight_particles(name):
+    eight, single = Octet(*MATERIALS[name]), Octet(*MATERIALS[name])
+    for k, share in enumerate((1.0, 1.0, -0.6, -0.9, 0.3)):
+        step = Step(1.0e-6, k * 1.0e-6, 1.0e-3, True, 0.2, 2.0, True)
+        eight.advance(step, share, at_once=True)
+        single.advance(step, share, at_once=False)
+        for field, expected in single.arrays.items():
+            assert np.isfinite(expected).all(), field
+            axes = tuple(range(1, expected.ndim)) if field == "answers" else None
+            scale = np.abs(expected).max(axis=axes, keepdims=True)
+            assert (np.abs(eight.arrays[field] - expected) <= ROUNDING * scale).all(), field
