@@ -9,6 +9,7 @@ import pytest
 from test_arruda_boyce import RUBBER as ARRUDA_BOYCE
 from test_cnh_mms import MODEL as CNH_MMS
 from test_comp_mooney_rivlin import RUBBER as MOONEY_RIVLIN
+from test_flow_stress import STEEL_JC
 from test_hypo_elastic import MODEL as HYPO_ELASTIC
 from test_ideal_gas import AIR, GAS
 from test_kelvin_voigt import MODEL as KELVIN_VOIGT
@@ -27,8 +28,15 @@ from test_water import LIQUID, WATER
 
 from solver.dispatch import inline
 from solver.jit import kernel
-from solver.lanes import WIDTH, Eight
-from solver.materials.constitutive import Point, Step, initialize, state_record, stress_update
+from solver.lanes import WIDTH, Eight, where
+from solver.materials.constitutive import DELETE, Point, Step, initialize, state_record, stress_update
+from solver.materials.damage import initialize_damage
+from solver.materials.elastic_plastic import ElasticPlastic
+from solver.materials.erosion.allow_no_shear import AllowNoShear
+from solver.materials.erosion.allow_no_tension import AllowNoTension
+from solver.materials.erosion.no_erosion import PreserveStress
+from solver.materials.erosion.zero_stress import ZeroStress
+from solver.materials.failure import new_failure, restrained, weakened
 from solver.materials.flow_stress import in_step, response
 from solver.materials.gao_elastic import GaoElastic
 from solver.materials.melting import melting_temperature
@@ -270,3 +278,84 @@ def test_materials_of_eight_particles(name):
             axes = tuple(range(1, expected.ndim)) if field == "answers" else None
             scale = np.abs(expected).max(axis=axes, keepdims=True)
             assert (np.abs(eight.arrays[field] - expected) <= ROUNDING * scale).all(), field
+
+
+@inline
+def fail(failure: Any, model: Any, state: Any, particles: Any, step: Any, p: Any, answers: Any) -> None:
+    """What damage and erosion make of a motion, a stress and a failure state."""
+    F = tensor_at(particles.deformation_gradient, p)
+    point = Point(
+        tensor_at(particles.stress, p),
+        F @ F,
+        F,
+        tensor_at(particles.velocity_gradient, p),
+        particles.volume[p],
+        particles.volume[p],
+        particles.mass[p],
+        particles.temperature[p],
+        particles.temperature[p],
+        particles.localized[p],
+    )
+    moved = restrained(failure, point)
+    put_tensor(particles.deformation_gradient, p, moved.deformation_gradient)
+    put_tensor(particles.velocity_gradient, p, moved.velocity_gradient)
+    localized = where(particles.color[p] > 0.5, 1, point.localized)
+    localized = where(particles.color[p] > 1.5, DELETE, localized)
+    weak = weakened(failure, model, state, p, point, point.stress, localized, COPPER, step)
+    put_tensor(particles.stress, p, weak.stress)
+    answers[p] = weak.localized
+
+
+@kernel
+def fail_all(failure, model, state, particles, step, answers):
+    fail(failure, model, state, particles, step, Eight(0), answers)
+
+
+FAILURES = {
+    "johnson_cook, ZeroStress": (MODELS["damage"][1], ZeroStress(2.0e-5)),
+    "hancock_mackenzie, AllowNoTension": (MODELS["damage"][2], AllowNoTension(2.0e-5)),
+    "Threshold, AllowNoShear": (MODELS["damage"][3], AllowNoShear()),
+    "Brittle, PreserveStress": (MODELS["damage"][5]._replace(youngs_modulus=1.0e11), PreserveStress()),
+}
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_failure_of_eight_particles(name):
+    """Some flow, one fails and one is removed in the step, two failed before; some break by voids and damage."""
+    damage, erosion = FAILURES[name]
+    model = ElasticPlastic(K, G, STEEL_JC, TEPLA_with_damage=True, failure_is_checked=True)
+    found = []
+    for at_once in (True, False):
+        rng = np.random.default_rng(13)
+        particles: Any = new_arrays(Particles, WIDTH)
+        state: Any = new_arrays(state_record(model), WIDTH)
+        failure = new_failure(damage, erosion, WIDTH)
+        initialize_damage(damage, failure.damage_state, particles, np.zeros(WIDTH, np.int64))
+        particles.deformation_gradient[:] += 0.1 * rng.normal(size=(WIDTH, 3, 3))
+        particles.velocity_gradient[:] = rng.normal(size=(WIDTH, 3, 3))
+        stress = rng.normal(size=(WIDTH, 3, 3)) + np.linspace(-2.0, 2.0, WIDTH)[:, None, None] * np.eye(3)
+        particles.stress[:] = 1.0e8 * (stress + stress.transpose(0, 2, 1))
+        particles.stress[5] = 0.0
+        particles.volume[:], particles.mass[:] = 1.0e-9, COPPER.density * 1.0e-9
+        particles.temperature[:] = 400.0
+        particles.localized[2] = particles.localized[7] = 1
+        particles.color[4], particles.color[1] = 1.0, 2.0
+        state.plastic_strain_rate[:] = 0.0, 1.0e5, 1.0e4, 0.1, 0.0, 3.0e4, 5.0e4, 1.0e5
+        state.porosity[:] = np.linspace(0.0, 0.49, WIDTH)
+        answers = np.zeros(WIDTH)
+        for k in range(3):
+            step = Step(1.0e-5, k * 1.0e-5, 1.0e-3, True, 0.2, 2.0, True)
+            if at_once:
+                fail_all(failure, model, state, particles, step, answers)
+            else:
+                for p in range(WIDTH):
+                    fail(failure, model, state, particles, step, p, answers)
+            particles.localized[:] = answers
+        found.append((particles, failure))
+    (particles, failure), (expected, expected_failure) = found
+    assert (expected.localized[[2, 7, 4, 1]] == [1, 1, 1, DELETE]).all()
+    records = (particles, expected), (failure.damage_state, expected_failure.damage_state)
+    for ours, theirs in (*records, (failure.erosion_state, expected_failure.erosion_state)):
+        for field, right in theirs._asdict().items():
+            atol = ROUNDING * np.abs(right).max(initial=0.0)
+            np.testing.assert_allclose(getattr(ours, field), right, rtol=0.0, atol=atol, err_msg=field)
