@@ -138,6 +138,12 @@ def scaling(activated: float, p: float) -> float:
 
 
 @inline
+def divisor(saturation: float) -> float:
+    """The saturation stress to divide by; where heat leaves none there is no threshold stress either."""
+    return where(saturation > 0.0, saturation, 1.0)
+
+
+@inline
 def threshold_stress(
     model: MechanicalThresholdStress, initial_rate: float, saturation: float, strain: float
 ) -> float:
@@ -146,7 +152,7 @@ def threshold_stress(
     growing = strain > 0.0
     growth = strain / SUBSTEPS * initial_rate
     back = growth / math.tanh(model.alpha)
-    sharpness = 0.5 * model.alpha / saturation
+    sharpness = 0.5 * model.alpha / divisor(saturation)
     for _ in range(SUBSTEPS):
         if not anywhere(growing):
             break
@@ -236,7 +242,7 @@ def stress_at(law: InStep, threshold: float) -> float:
 @inline
 def hardening_at(law: InStep, threshold: float) -> float:
     """The slope by plastic strain, after Voce."""
-    F = math.tanh(law.model.alpha * (threshold / law.saturation)) / math.tanh(law.model.alpha)
+    F = math.tanh(law.model.alpha * (threshold / divisor(law.saturation))) / math.tanh(law.model.alpha)
     voce = law.initial_rate * (1.0 - F) + law.model.theta_IV * F
     return law.softening * law.evolving * voce
 

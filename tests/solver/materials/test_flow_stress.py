@@ -371,6 +371,14 @@ def test_constants_of_the_high_temperature_phase_of_steel():
     assert flow_stress(model, hot) == pytest.approx(mechanical_threshold_stress(austenite, hot), rel=1e-7)
 
 
+@pytest.mark.parametrize("strain", [0.0, 0.3])
+def test_where_heat_leaves_no_saturation_stress_the_athermal_stress_is_left(strain):
+    melting = state(strain_rate=1.0e-6, temperature=1300.0, shear_modulus=1.0e6, plastic_strain=strain)
+    assert flow_stress(COPPER_MTS, melting) == COPPER_MTS.sigma_a
+    assert hardening_slope(COPPER_MTS, melting) == 0.0
+    assert_compiled_agrees(flow_stress, COPPER_MTS, melting)
+
+
 def test_thermal_stress_of_dislocation_constants():
     constants = {
         "dislocation_density": 1.0e12,
