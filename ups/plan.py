@@ -12,7 +12,7 @@ from solver.declare import FAMILIES, fields
 from ups.deck import MaterialSection, Specification, read_deck
 from ups.sizes import BYTES_A_NODE, BYTES_A_PARTICLE, readable_size, size_of_output
 
-SECONDS_A_PARTICLE_STEP = 3.0e-7
+SECONDS_A_PARTICLE_STEP = 2.0e-7
 """Time that a particle takes in a step on one core, of a common model."""
 
 
