@@ -14,11 +14,11 @@ from solver.contact.coulomb import (
     limited,
     shares_node,
 )
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactLaw, ContactScene, same
 from solver.contact.normals import surface_fields
 from solver.contact.vectors import dot, minus, over, plus, put_vector, vector_at
 from solver.declare import Parameter, Vector, model
+from solver.deferred import deferred_kernel
 
 
 @model("contact", "approach")

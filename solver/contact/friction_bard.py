@@ -16,11 +16,11 @@ from solver.contact.coulomb import (
     limited,
     shares_node,
 )
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactLaw, ContactScene, same
 from solver.contact.normals import SurfaceFields, shared_nodes, surface_fields
 from solver.contact.vectors import dot, length, minus, over, plus, put_vector, times, vector_at
 from solver.declare import Parameter, Vector, model
+from solver.deferred import deferred_kernel
 
 COMPRESSION = -1.0e-12
 """Normal traction below which a surface counts as pressed."""

@@ -6,7 +6,6 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactLaw, ContactScene
 from solver.contact.logistic_regression import (
     LEAST_MASS,
@@ -18,6 +17,7 @@ from solver.contact.logistic_regression import (
 )
 from solver.contact.vectors import dot, minus, over, plus, put_vector, times, vector_at
 from solver.declare import Parameter, model
+from solver.deferred import deferred_kernel
 
 
 @dataclass(kw_only=True)

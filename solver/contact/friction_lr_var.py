@@ -8,11 +8,11 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.friction_lr import LogisticRegressionFriction
 from solver.contact.law import Array, ContactScene, check_material
 from solver.contact.particle_shapes import ParticleShapes, particle_shapes, shape_of
 from solver.declare import Parameter, model
+from solver.deferred import deferred_kernel
 from solver.interpolation.shape import MOST_NODES
 
 

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactScene
 from solver.contact.particle_shapes import ParticleShapes, shape_of, shapes_of
 from solver.contact.vectors import dot, length, over, plus, put_vector, times, vector_at
 from solver.declare import Vector
+from solver.deferred import deferred_kernel
 from solver.dispatch import inline
 from solver.interpolation.shape import MOST_NODES, particle_domain
 from solver.nodal import EMPTY_MASS

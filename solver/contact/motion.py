@@ -10,10 +10,10 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import NEGLIGIBLE, PRESENT_MASS, Array, ContactLaw, ContactScene, check_material
 from solver.contact.vectors import cross, minus, over, plus
 from solver.declare import Parameter, Vector
+from solver.deferred import deferred_kernel
 from solver.dispatch import inline
 
 TRANSLATION_COLUMNS = 4

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactScene
 from solver.contact.particle_shapes import ParticleShapes, particle_shapes, shape_of
 from solver.contact.vectors import dot, length, minus, over, plus, put_vector, times, vector_at
 from solver.declare import Vector
+from solver.deferred import deferred_kernel
 from solver.dispatch import inline
 from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, reach

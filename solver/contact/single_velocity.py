@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import PRESENT_MASS, Array, ContactLaw, ContactScene
 from solver.contact.vectors import over, plus, put_vector, times, vector_at
 from solver.declare import Parameter, model
+from solver.deferred import deferred_kernel
 
 
 @model("contact", "single_velocity")

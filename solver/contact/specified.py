@@ -7,7 +7,6 @@ from typing import Annotated
 
 import numpy as np
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import Array, ContactScene
 from solver.contact.motion import (
     Motion,
@@ -23,6 +22,7 @@ from solver.contact.motion import (
 from solver.contact.normals import surface_fields
 from solver.contact.vectors import dot, minus, over, put_vector, times, vector_at
 from solver.declare import IntVector, Parameter, Vector, model
+from solver.deferred import deferred_kernel
 from solver.dispatch import inline
 
 FACES = ("xminus", "xplus", "yminus", "yplus", "zminus", "zplus")

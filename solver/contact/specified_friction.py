@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from solver.contact.deferred import deferred_kernel
 from solver.contact.law import PRESENT_MASS, Array, ContactScene, same
 from solver.contact.logistic_regression import (
     NO_ALPHA,
@@ -26,6 +25,7 @@ from solver.contact.motion import (
 )
 from solver.contact.vectors import dot, minus, over, plus, put_vector, times, vector_at
 from solver.declare import Parameter, model
+from solver.deferred import deferred_kernel
 
 
 @model("contact", "specified_friction")

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.contact.deferred import deferred_kernel
 from solver.declare import IntVector
+from solver.deferred import deferred_kernel
 from solver.domains.decomposition import Domain
 from solver.grid import Grid, GridIndex
 

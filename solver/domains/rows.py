@@ -9,7 +9,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from solver.contact.deferred import deferred_kernel
+from solver.deferred import deferred_kernel
 
 Array = NDArray[Any]
 

@@ -244,10 +244,10 @@ def update_stresses(loop: StressLoop, first: int, last: int, sums: Any) -> None:
     Does the chunks ``first`` to ``last`` of particles and stores in ``sums`` (chunks, STRESS_SUMS) each one's
     :class:`Stressed`.
     """
-    if not takes_lanes(stress_update, loop.model):
+    particles = len(loop.particles)
+    if particles < WIDTH or not takes_lanes(stress_update, loop.model):
         update_singly(loop, first, last, sums)
         return
     update_by_eight(loop, first, last, sums)
-    particles = len(loop.particles)
     if particles % WIDTH and first <= particles // CHUNK < last:
         update_rest(loop, last - 1, sums)

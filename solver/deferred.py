@@ -1,4 +1,4 @@
-"""Kernels beside the law that they belong to, in modules that can be imported without numba."""
+"""Kernels beside what they belong to, in modules that can be imported without numba."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def deferred_kernel(function: Function) -> Function:
-    """A kernel of ``solver.jit`` that is compiled (or taken from the disk cache) when it is first called."""
+    """A ``kernel_with_scratch`` that is compiled, or taken from the disk cache, when it is first called."""
 
     @functools.cache
     def compiled() -> Callable[..., Any]:
