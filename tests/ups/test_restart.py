@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from small_decks import CONTACT, LEFT, PLASTIC, SAVES, deck, material, write
 
+from solver import simulation, sorting
 from ups.archive import Archive
 from ups.deck import read_deck
 from ups.diagnostics import DeckError
@@ -97,6 +98,26 @@ def test_stopping_and_going_on_gives_the_same_bytes(tmp_path: Path, name: str) -
     expected, found = contents(tmp_path / "straight"), contents(tmp_path / "halves")
     assert expected.keys() == found.keys()
     assert [f for f in expected if expected[f] != found[f]] == []
+
+
+def test_particles_are_sorted_when_the_uninterrupted_run_sorts_them(tmp_path: Path, monkeypatch) -> None:
+    """With an order that turns round each time, so that a look too many or too few would show."""
+    monkeypatch.setattr(sorting, "LEAST_PARTICLES", 0)
+    monkeypatch.setattr(sorting, "STEPS_BETWEEN_LOOKS", 3)
+    monkeypatch.setattr(sorting, "LARGEST_DISORDER", -1.0)
+    monkeypatch.setattr(simulation, "in_order_of_cells", lambda grid, x: np.arange(len(x))[::-1])
+    path = write(tmp_path, DECKS["contact"].replace("<save", '<save label="p.particleID"/><save', 1))
+    run_deck(read_deck(path), output=tmp_path / "straight")
+    for stop in (7, 11):  # goes on from the checkpoints 6, where it looks, and 11
+        halves = tmp_path / f"halves{stop}"
+        run_deck(read_deck(path), output=halves, max_steps=stop)
+        resume_run(halves)
+        assert contents(tmp_path / "straight") == contents(halves)
+    archive = Archive(tmp_path / "straight")
+    orders = [archive.particles(t.step, "p.particleID", 0).tolist() for t in archive.timesteps]
+    first, second, third, _ = orders
+    assert first == third != second
+    assert sorted(first) == sorted(second)
 
 
 def test_the_plastic_deck_flows(tmp_path: Path) -> None:
