@@ -50,12 +50,12 @@ def filename(name: str, material: int) -> str:
 
 def value_text(variable: Variable, value: object) -> str:
     """Write a value as Uintah prints it: 17 digits; a vector with blanks around, a matrix without."""
-    array = variable.shaped(np.asarray(value), ()).reshape(-1)
-    if variable.element_type.dtype.kind != "f":
-        text = " ".join(str(int(component)) for component in array)
-    else:
-        text = " ".join(f"{component:.17g}" for component in array.tolist())
-    return f" {text} " if variable.element_type.shape == (3,) else text
+    if isinstance(value, float) and variable.element == "double":  # most of them, and one a step
+        return f"{value:.17g}"
+    element = variable.element_type
+    components = variable.shaped(np.asarray(value), ()).ravel().tolist()
+    text = " ".join([f"{c:.17g}" if element.dtype.kind == "f" else str(int(c)) for c in components])
+    return f" {text} " if element.shape == (3,) else text
 
 
 class ReductionFile:

@@ -166,6 +166,8 @@ class Variable:
         """
         element = self.element_type
         array = np.asarray(values)
+        if array.dtype == element.dtype and array.shape == outer + element.shape:
+            return array
         flat = (*outer, element.components) if element.shape else outer
         if array.shape not in (outer + element.shape, flat):
             raise ValueError(

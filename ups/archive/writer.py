@@ -313,11 +313,14 @@ class ArchiveWriter:
         if self._ranks.rank or not self.reduction_format.due(step, last):
             return
         prefix = self.reduction_format.prefix(step, time)
+        listed = len(self._output.index.globals_)
         for variable, by_material in values.items():
             for material, value in by_material.items():
                 name = reductions.filename(variable.name, material)
                 history = self._histories.get(name) or self._open_history(variable, name)
                 history.append(prefix + reductions.value_text(variable, value))
+        if len(self._output.index.globals_) > listed:
+            self._output.save_index()
 
     def _cut_histories(self, step: int, time: float) -> None:
         """Remove the lines of the histories that are later than a step."""
@@ -340,7 +343,6 @@ class ArchiveWriter:
         listed = Listed(variable.name, variable.type_name, href=name)
         if listed not in self._output.index.globals_:
             self._output.index.globals_.append(listed)
-            self._output.save_index()
         return history
 
     def _flush_together(self) -> None:
