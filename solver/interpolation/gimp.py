@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 from solver.declare import model
 from solver.dispatch import implements, inline
-from solver.grid import GridIndex
-from solver.interpolation.shape import particle_domain, shape_functions
-from solver.interpolation.stencil import Stencil, alone, direction, separable, stencil, undeformed
-from solver.lanes import Lanes, above
-from solver.tensor import Tensor
+from solver.interpolation.revolved import Radial, of_revolution, radial
+from solver.interpolation.stencil import Stencil, direction, separable, stencil
+from solver.lanes import Lanes, above, every, where
 
 
 @model("interpolator", "gimp")
@@ -25,15 +22,13 @@ class Gimp(NamedTuple):
         return GimpAxisymmetric() if axisymmetric else Gimp()
 
 
+@of_revolution
 class GimpAxisymmetric(NamedTuple):
     """Averages over the particle's cross-section weighted with the radius (Nairn and Guilkey 2015)."""
 
 
-implements(particle_domain, GimpAxisymmetric)(undeformed)
-
-
-@implements(direction, Gimp)
-def _(interpolator: Gimp, f: Lanes, width: Lanes) -> Stencil:
+@implements(direction, Gimp, GimpAxisymmetric)
+def _(interpolator: Any, f: Lanes, width: Lanes) -> Stencil:
     return averaged_hat(f, 0.5 * width)
 
 
@@ -59,29 +54,36 @@ def averaged_hat(f: Lanes, half: Lanes) -> Stencil:
     )
 
 
-class Radial(NamedTuple):
-    """Radial weights w on nodes i, i + 1, i + third; gradients g (per cell), hoop weights t = S/r without the z split.
+class Around(NamedTuple):
+    """Numbers at a node and at those below and above it."""
 
-    ``v`` are the weights that multiply the axial gradient; Uintah writes them with the particle width 1/2 built
-    in where the particle lies inside the cell, and so does this.
-    """
-
-    third: int
-    w0: float
-    w1: float
-    w2: float
-    v0: float
-    v1: float
-    g0: float
-    g1: float
-    g2: float
-    t0: float
-    t1: float
-    t2: float
+    lower: Lanes
+    middle: Lanes
+    upper: Lanes
 
 
 @inline
-def straddled(xi: float, r: float, lp: float) -> float:
+def chosen(condition: Any, a: Around, b: Around) -> Around:
+    """``a`` where the condition holds, else ``b``."""
+    return Around(
+        where(condition, a.lower, b.lower),
+        where(condition, a.middle, b.middle),
+        where(condition, a.upper, b.upper),
+    )
+
+
+@inline
+def from_lower(starts: Any, s: Around) -> Around:
+    """The same from the lower node on where that counts, else from the middle node on, with nothing at the end."""
+    return Around(
+        where(starts, s.lower, s.middle),
+        where(starts, s.middle, s.upper),
+        where(starts, s.upper, 0.0),
+    )
+
+
+@inline
+def straddled(xi: Lanes, r: Lanes, lp: Lanes) -> Lanes:
     """Weight of a node inside the particle: xi is the offset in half cells, r the node's radius in cells."""
     return ((4.0 - lp) * lp - xi * xi) / (4.0 * lp) + xi * (xi * xi - 3.0 * lp * lp) / (
         12.0 * lp * (2.0 * r + xi)
@@ -89,112 +91,71 @@ def straddled(xi: float, r: float, lp: float) -> float:
 
 
 @inline
-def reached(distance: float, side: float, xi: float, r: float, lp: float) -> float:
+def reached(distance: Lanes, side: float, xi: Lanes, r: Lanes, lp: Lanes) -> Lanes:
     """Weight of a node that the particle only partly reaches; side is +1 where the node lies above the particle."""
     return distance * distance / (8.0 * lp) * (1.0 - (xi + side * 2.0 * (1.0 - lp)) / (3.0 * (2.0 * r + xi)))
 
 
 @inline
-def radial_average(xi: float, node: float, third: int, half: float, r: float, h: float) -> Radial:
+def slope_reached(distance: Lanes, side: float, xi: Lanes, r: Lanes, lp: Lanes) -> Lanes:
+    """Derivative of that, per cell."""
+    return side * distance / (2.0 * lp) * (1.0 - (xi + side * (2.0 - lp)) / (2.0 * (2.0 * r + xi)))
+
+
+@implements(radial, GimpAxisymmetric)
+def _(interpolator: Any, f: Lanes, width: Lanes, node: Lanes, x: Lanes, h: float) -> Radial:
     """Radius-weighted averages of the hat function (Nairn and Guilkey 2015, their equations for axisymmetric GIMP).
 
-    xi : particle's position from node i in half cells; node : radius of node i in cells; half : particle half width
-    in cells; r : radius of the particle; h : cell size.
+    Three forms: the particle straddles the node nearest to it; it lies inside the cell; it is the first beyond the
+    axis. Where it lies inside, the width 1/2 is built in to the weights that meet the derivative along the axis, as
+    in Uintah.
     """
-    lp = 2.0 * half
-    xi1, node1 = xi - 2.0, node + 1.0
-    xi2, node2 = xi - 2.0 * third, node + third
-    if xi <= 0.5 and r < half * h:
-        w0, w1 = (3.0 - lp - xi) / 3.0, (2.0 + lp + xi1) / 3.0
-        t0, t1 = (4.0 / (lp + xi) - 1.0) / h, 1.0 / h
-        return Radial(third, w0, w1, 0.0, w0, w1, -0.5, 0.5, 0.0, t0, t1, 0.0)
-    if xi <= 0.5:
-        d1, d2 = 2.0 + lp + xi1, 2.0 + lp - xi2
-        w0, w1 = straddled(xi, node, lp), reached(d1, 1.0, xi1, node1, lp)
-        return Radial(
-            third,
-            w0,
-            w1,
-            reached(d2, -1.0, xi2, node2, lp),
-            w0,
-            w1,
-            -xi / (2.0 * lp) - (lp * lp - xi * xi) / (4.0 * lp * (2.0 * node + xi)),
-            d1 / (4.0 * lp) * (1.0 - (xi1 + 2.0 - lp) / (2.0 * (2.0 * node1 + xi1))),
-            -d2 / (4.0 * lp) * (1.0 - (xi2 - 2.0 + lp) / (2.0 * (2.0 * node2 + xi2))),
-            ((4.0 - lp) * lp - xi * xi) / (4.0 * lp) / r,
-            d1 * d1 / (8.0 * lp) / r,
-            d2 * d2 / (8.0 * lp) / r,
-        )
-    if xi <= 1.5:
-        s0, s1 = 0.5 * (2.0 - xi), 0.5 * (2.0 + xi1)
-        c0, c1 = 1.0 / (2.0 * node + xi), 1.0 / (2.0 * node1 + xi1)
-        return Radial(
-            third,
-            s0 - lp * lp / 6.0 * c0,
-            s1 + lp * lp / 6.0 * c1,
-            0.0,
-            s0 - c0 / 24.0,
-            s1 + c1 / 24.0,
-            -0.5,
-            0.5,
-            0.0,
-            s0 / r,
-            s1 / r,
-            0.0,
-        )
-    d0, d2 = 2.0 + lp - xi, 2.0 + lp + xi2
-    w0, w1 = reached(d0, -1.0, xi, node, lp), straddled(xi1, node1, lp)
-    return Radial(
-        third,
-        w0,
-        w1,
-        reached(d2, 1.0, xi2, node2, lp),
-        w0,
-        w1,
-        -d0 / (4.0 * lp) * (1.0 - (xi - 2.0 + lp) / (2.0 * (2.0 * node + xi))),
-        -xi1 / (2.0 * lp) - (lp * lp - xi1 * xi1) / (4.0 * lp * (2.0 * node1 + xi1)),
-        d2 / (4.0 * lp) * (1.0 - (xi2 + 2.0 - lp) / (2.0 * (2.0 * node2 + xi2))),
-        d0 * d0 / (8.0 * lp) / r,
-        ((4.0 - lp) * lp - xi1 * xi1) / (4.0 * lp) / r,
-        d2 * d2 / (8.0 * lp) / r,
+    lp, none = width, every(0.0)
+    upper = above(f, 0.75)  # 1 where the upper node of the cell is nearest
+    xi, r = 2.0 * (f - upper), node + upper
+    # Measured from the far nodes, as Uintah does (see averaged_hat).
+    up, down = 2.0 + lp + (xi - 2.0), 2.0 + lp - (xi + 2.0)
+    w = Around(
+        reached(down, -1.0, xi + 2.0, r - 1.0, lp),
+        straddled(xi, r, lp),
+        reached(up, 1.0, xi - 2.0, r + 1.0, lp),
+    )
+    v = w
+    g = Around(
+        slope_reached(down, -1.0, xi + 2.0, r - 1.0, lp),
+        -xi / lp - (lp * lp - xi * xi) / (2.0 * lp * (2.0 * r + xi)),
+        slope_reached(up, 1.0, xi - 2.0, r + 1.0, lp),
+    )
+    t = Around(
+        down * down / (8.0 * lp) / x, ((4.0 - lp) * lp - xi * xi) / (4.0 * lp) / x, up * up / (8.0 * lp) / x
     )
 
+    low, high, c = 1.0 - f, f, 1.0 / (2.0 * (node + f))
+    inside = (f > 0.25) & (f <= 0.75)
+    w = chosen(inside, Around(none, low - lp * lp / 6.0 * c, high + lp * lp / 6.0 * c), w)
+    v = chosen(inside, Around(none, low - c / 24.0, high + c / 24.0), v)
+    t = chosen(inside, Around(none, low / x, high / x), t)
 
-@implements(shape_functions, GimpAxisymmetric)
-def _(
-    interpolator: GimpAxisymmetric,
-    grid: GridIndex,
-    x: float,
-    y: float,
-    z: float,
-    domain: Tensor,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    hx = grid.spacing[0]
-    qx = (x - grid.anchor[0]) / hx
-    i = math.floor(qx)
-    radius = grid.anchor[0] + i * hx
-    third = -1 if qx - i <= 0.5 else 2
-    R = radial_average(2.0 / hx * (x - radius), radius / hx, third, 0.5 * domain.xx, x, hx)
-    Y = alone(Gimp(), grid, 1, y, domain.yy)
-    row = grid.nodes[0]
-    layer = row * grid.nodes[1]
-    first = (i - grid.first[0]) + row * Y.first - layer * grid.first[2]
-    w, v, ox = (R.w0, R.w1, R.w2), (R.v0, R.v1, R.w2), (0, 1, R.third)
-    g, t = (R.g0 / hx, R.g1 / hx, R.g2 / hx), (R.t0, R.t1, R.t2)
-    n = 0
-    for b in range(Y.nodes):
-        wy, gy = Y.w[b], Y.g[b]
-        for a in range(3):
-            if w[a] * wy <= 0.0:
-                continue
-            for c in range(2):
-                nodes[n] = first + ox[a] + row * b + layer * c
-                weights[n] = 0.5 * w[a] * wy
-                gradients[n, 0] = g[a] * wy
-                gradients[n, 1] = 0.5 * v[a] * gy
-                gradients[n, 2] = 0.5 * t[a] * wy
-                n += 1
-    return n
+    first = (f <= 0.25) & (x < 0.5 * width * h)
+    at_axis = Around(none, (3.0 - up) / 3.0, up / 3.0)
+    w, v = chosen(first, at_axis, w), chosen(first, at_axis, v)
+    t = chosen(first, Around(none, (4.0 / up - 1.0) / h, 1.0 / h + none), t)
+    g = chosen(inside | first, Around(none, none - 1.0, none + 1.0), g)
+
+    starts = w.lower > 0.0
+    w, v, g, t = from_lower(starts, w), from_lower(starts, v), from_lower(starts, g), from_lower(starts, t)
+    return Radial(
+        where(starts, 1.0, 0.0) - upper,
+        w.lower,
+        w.middle,
+        w.upper,
+        v.lower,
+        v.middle,
+        v.upper,
+        g.lower,
+        g.middle,
+        g.upper,
+        t.lower,
+        t.middle,
+        t.upper,
+    )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from solver.declare import model
 from solver.dispatch import implements, inline
 from solver.grid import GridIndex, NodeBlock
+from solver.interpolation.revolved import Radial, of_revolution, radial
 from solver.interpolation.shape import (
     Content,
     Gathered,
@@ -17,12 +17,10 @@ from solver.interpolation.shape import (
     Sums,
     gather,
     nothing,
-    particle_domain,
     reach,
     scatter,
-    shape_functions,
 )
-from solver.interpolation.stencil import Corner, G, Stencil, W, corner, direction, separable, undeformed
+from solver.interpolation.stencil import Corner, G, Stencil, W, corner, direction, separable
 from solver.lanes import Lanes, add_scaled, every, lanes_at, put_lanes
 from solver.particles import Particles
 from solver.tensor import Tensor
@@ -39,11 +37,9 @@ class Linear(NamedTuple):
         return LinearAxisymmetric() if axisymmetric else Linear()
 
 
+@of_revolution
 class LinearAxisymmetric(NamedTuple):
-    """Bilinear in (r, z) = (x, y); the two layers of nodes of the one cell in the third direction share alike."""
-
-
-implements(particle_domain, LinearAxisymmetric)(undeformed)
+    """Bilinear in (r, z) = (x, y)."""
 
 
 @implements(reach, Linear, LinearAxisymmetric)
@@ -51,10 +47,16 @@ def _(interpolator: Any, domain: Tensor) -> float:
     return 1.0
 
 
-@implements(direction, Linear)
-def _(interpolator: Linear, f: Lanes, width: Lanes) -> Stencil:
+@implements(direction, Linear, LinearAxisymmetric)
+def _(interpolator: Any, f: Lanes, width: Lanes) -> Stencil:
     none, one = every(0.0), every(1.0)
     return Stencil(none, 1.0 - f, f, none, -1.0 * one, one, none)
+
+
+@implements(radial, LinearAxisymmetric)
+def _(interpolator: Any, f: Lanes, width: Lanes, node: Lanes, x: Lanes, h: float) -> Radial:
+    none, one, e = every(0.0), every(1.0), 1.0 - f
+    return Radial(none, e, f, none, e, f, none, -1.0 * one, one, none, e / x, f / x, none)
 
 
 class NodeWeights(NamedTuple):
@@ -123,37 +125,3 @@ def _(
                 by_y = add_scaled(by_y, row, n.gy)
                 by_z = add_scaled(by_z, row, n.gz)
     return Gathered(value, by_x, by_y, by_z)
-
-
-@implements(shape_functions, LinearAxisymmetric)
-def _(
-    interpolator: LinearAxisymmetric,
-    grid: GridIndex,
-    x: float,
-    y: float,
-    z: float,
-    domain: Tensor,
-    nodes: Any,
-    weights: Any,
-    gradients: Any,
-) -> int:
-    hx, hy = grid.spacing[0], grid.spacing[1]
-    qx, qy = (x - grid.anchor[0]) / hx, (y - grid.anchor[1]) / hy
-    i, j = math.floor(qx), math.floor(qy)
-    fx, fy = qx - i, qy - j
-    row = grid.nodes[0]
-    layer = row * grid.nodes[1]
-    first = (i - grid.first[0]) + row * (j - grid.first[1]) - layer * grid.first[2]
-    n = 0
-    for b in range(2):
-        wy, gy = (fy, 0.5 / hy) if b else (1.0 - fy, -0.5 / hy)
-        for a in range(2):
-            wx, gx = (fx, 0.5 / hx) if a else (1.0 - fx, -0.5 / hx)
-            for c in range(2):
-                nodes[n] = first + a + row * b + layer * c
-                weights[n] = 0.5 * wx * wy
-                gradients[n, 0] = gx * wy
-                gradients[n, 1] = wx * gy
-                gradients[n, 2] = 0.5 * wx * wy / x
-                n += 1
-    return n
