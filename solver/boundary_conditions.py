@@ -68,6 +68,10 @@ SET, ZERO_NORMAL, MIRROR, GRADIENT = range(4)
 negated; scalar of the source node less the value."""
 
 
+EVERYWHERE = np.ones(0, dtype=np.uint8)
+"""In place of a mask of nodes: conditions act at all of them."""
+
+
 class BoundaryConditions:
     """The conditions of all faces, compiled for each material.
 
@@ -95,21 +99,24 @@ class BoundaryConditions:
         regions, materials = self._given
         return BoundaryConditions(regions, grid, materials, self._extra_nodes)
 
-    def apply_velocity(self, velocity: Array, material: int) -> None:
-        """Impose prescribed velocities on nodal vectors (N, 3) in place."""
-        self._run("Velocity", velocity, material)
+    def apply_velocity(self, velocity: Array, material: int, touched: Array = EVERYWHERE) -> None:
+        """Impose prescribed velocities on nodal vectors (N, 3) in place.
 
-    def apply_symmetry(self, vectors: Array, material: int) -> None:
+        Here and below, ``touched`` (N or more,) says at which nodes conditions need not act: where it is zero.
+        """
+        self._run("Velocity", velocity, material, touched)
+
+    def apply_symmetry(self, vectors: Array, material: int, touched: Array = EVERYWHERE) -> None:
         """Make nodal vectors (N, 3) mirror-symmetric about the symmetry faces, in place."""
-        self._run("Symmetric", vectors, material)
+        self._run("Symmetric", vectors, material, touched)
 
-    def apply_temperature(self, temperature: Array, material: int) -> None:
+    def apply_temperature(self, temperature: Array, material: int, touched: Array = EVERYWHERE) -> None:
         """Impose temperatures, or their gradient, on nodal values (N,) in place."""
-        self._run("Temperature", temperature.reshape(-1, 1), material)
+        self._run("Temperature", temperature.reshape(-1, 1), material, touched)
 
-    def apply_concentration(self, concentration: Array, material: int) -> None:
+    def apply_concentration(self, concentration: Array, material: int, touched: Array = EVERYWHERE) -> None:
         """Impose concentrations, or their gradient, on nodal values (N,) in place."""
-        self._run("SD-Type", concentration.reshape(-1, 1), material)
+        self._run("SD-Type", concentration.reshape(-1, 1), material, touched)
 
     def node_to_cell_weight(self) -> Array:
         """1/8 at every node, doubled for each symmetry face (of material 0) that the node lies on, (N,)."""
@@ -120,12 +127,12 @@ class BoundaryConditions:
                     weight[self._face_nodes(patch, face, extra=False)] *= 2.0
         return weight
 
-    def _run(self, label: str, field: Array, material: int) -> None:
+    def _run(self, label: str, field: Array, material: int, touched: Array) -> None:
         operations = self._operations[label, material]
         if len(operations.kind):
             from solver.kernels.nodes import apply_operations
 
-            apply_operations(operations, field)
+            apply_operations(operations, touched, field)
 
     def _conditions(self, face: str, label: str, material: int) -> list[tuple[Region, Condition]]:
         """The conditions in force for a material: its own, else those for all materials."""

@@ -377,8 +377,7 @@ class Simulation:
         self.clock(Phase.GRID)
         for m, active in enumerate(self._active):
             self._over_nodes(active, nodes.untouch, self._touched[m])
-            if self.contact_laws and len(self.bodies) > 1:
-                nodes.forget_motion(active, self.nodal)
+        were_active = list(self._active)
         on_their_way: deque[tuple[int, Callable[[], None]]] = deque()
         for m, body in enumerate(self.bodies):
             if len(on_their_way) == len(self._rows):
@@ -388,6 +387,9 @@ class Simulation:
             on_their_way.append((m, self.exchange.add(sums.rows, touched=sums.touched)))
         for arriving in on_their_way:
             self._arrive(*arriving)
+        if self.contact_laws and len(self.bodies) > 1:
+            for active in were_active:
+                self._over_nodes(active, nodes.forget_motion, self._touched, self.nodal)
 
     def _project(self, m: int, body: Body) -> None:
         """Sums over the particles of a body at the nodes: mass, momentum, forces, volume and heat."""
@@ -418,8 +420,8 @@ class Simulation:
         self._active[m] = listed[:count]
         projected = self._projected_temperature[m]
         self._over_nodes(self._active[m], nodes.normalise, rows, self._fields[m], projected)
-        self.boundary_conditions.apply_temperature(nodal.temperature[m], m)
-        self.boundary_conditions.apply_symmetry(nodal.velocity[m], m)
+        self.boundary_conditions.apply_temperature(nodal.temperature[m], m, touched)
+        self.boundary_conditions.apply_symmetry(nodal.velocity[m], m, touched)
 
     def _scatter(self, m: int, body: Body) -> None:
         """Sum what the particles of a body carry at the nodes; each thread fills its own block of nodes."""
@@ -473,7 +475,7 @@ class Simulation:
     def _symmetric_forces(self) -> None:
         for m, body in enumerate(self.bodies):
             if not body.rigid:
-                self.boundary_conditions.apply_symmetry(self.nodal.internal_force[m], m)
+                self.boundary_conditions.apply_symmetry(self.nodal.internal_force[m], m, self._touched[m])
 
     def _scene(self, dt: float) -> ContactScene:
         return ContactScene(
@@ -540,8 +542,8 @@ class Simulation:
         """Conditions on v*, from which the acceleration follows anew at every node."""
         nodal = self.nodal
         for m in range(len(self.bodies)):
-            self.boundary_conditions.apply_velocity(nodal.velocity_star[m], m)
-            self.boundary_conditions.apply_symmetry(nodal.velocity_star[m], m)
+            self.boundary_conditions.apply_velocity(nodal.velocity_star[m], m, self._touched[m])
+            self.boundary_conditions.apply_symmetry(nodal.velocity_star[m], m, self._touched[m])
             vectors = nodal.velocity_star[m], nodal.velocity[m], dt, nodal.acceleration[m]
             self._over_nodes(self._active[m], nodes.rate_of_change, *vectors)
 
@@ -558,7 +560,7 @@ class Simulation:
                 star[:] = nodal.temperature_rate[m] = 0.0
                 continue
             self._over_nodes(self._active[m], nodes.warm_up, self._fields[m], dt, star)
-            self.boundary_conditions.apply_temperature(star, m)
+            self.boundary_conditions.apply_temperature(star, m, self._touched[m])
             numbers = star, self._projected_temperature[m], dt, nodal.temperature_rate[m]
             self._over_nodes(self._active[m], nodes.rate_of_numbers, *numbers)
 

@@ -38,8 +38,11 @@ def same(a: float, b: float) -> bool:
 class BoundaryConditions(Protocol):
     """What contact asks of the grid's boundary conditions."""
 
-    def apply_symmetry(self, vectors: Array, material: int) -> None:
-        """Treat nodal vectors (N, 3) of a material in place, as velocities on faces of symmetry are."""
+    def apply_symmetry(self, vectors: Array, material: int, touched: Array = ...) -> None:
+        """Treat nodal vectors (N, 3) of a material in place, as velocities on faces of symmetry are.
+
+        Nodes whose ``touched`` is zero may be left out.
+        """
 
 
 @dataclass

@@ -57,8 +57,8 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     spacing = scene.grid.spacing
     scale = (spacing[0], spacing[1], 0.0) if scene.axisymmetric else (1.0, 1.0, 1.0)
     shared = scene.once(shared_nodes)
-    wanted = new("shared", count, np.bool_)
-    wanted[shared] = True
+    wanted = new("shared", count, np.uint8)
+    wanted[shared] = 1
     near = new("near shared", count, np.bool_)
     mark_cells_near(scene.grid.index, shared, near)
     for m, particles in enumerate(scene.particles):
@@ -82,7 +82,7 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     if scene.colinear_normals:
         make_colinear(shared, fields.normal, nodal.mass)
     for m in range(materials):
-        scene.boundary_conditions.apply_symmetry(fields.normal[m], m)
+        scene.boundary_conditions.apply_symmetry(fields.normal[m], m, wanted)
     finish(shared, fields, nodal.mass, stress)
     return fields
 

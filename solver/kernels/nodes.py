@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from solver.boundary_conditions import GRADIENT, MIRROR, SET, ZERO_NORMAL, Operations
+from solver.dispatch import inline
 from solver.jit import kernel
 from solver.kernels.chunks import CHUNK
 from solver.kernels.transfer import CHANNELS
@@ -16,28 +17,31 @@ from solver.nodal import EMPTY_MASS, NodalFields
 
 
 @kernel
-def apply_operations(operations: Operations, field: Any) -> None:
-    """Apply boundary operations to nodal values (N, components) in order."""
+def apply_operations(operations: Operations, touched: Any, field: Any) -> None:
+    """Apply boundary operations to nodal values (N, components) in order; at touched nodes, or with no mask at all."""
+    everywhere = touched.shape[0] == 0
     for o in range(operations.kind.shape[0]):
-        start, end = operations.start[o], operations.start[o + 1]
-        node, source = operations.node[start:end], operations.source[start:end]
         kind, axis, value = operations.kind[o], operations.axis[o], operations.value[o]
-        if kind == ZERO_NORMAL:
-            for e in range(node.shape[0]):
-                field[node[e], axis] = 0.0
-        elif kind == SET:
-            for e in range(node.shape[0]):
-                for c in range(field.shape[1]):
-                    field[node[e], c] = value[c]
-        elif kind == MIRROR:
-            for e in range(node.shape[0]):
-                for c in range(field.shape[1]):
-                    field[node[e], c] = field[source[e], c]
-                field[node[e], axis] = -field[source[e], axis]
-        elif kind == GRADIENT:
-            for e in range(node.shape[0]):
-                for c in range(field.shape[1]):
-                    field[node[e], c] = field[source[e], c] - value[c]
+        for e in range(operations.start[o], operations.start[o + 1]):
+            node, source = operations.node[e], operations.source[e]
+            if everywhere or touched[node]:
+                apply_operation(kind, axis, value, field[node], field[source])
+
+
+@inline
+def apply_operation(kind: int, axis: int, value: Any, at: Any, there: Any) -> None:
+    """Apply an operation to the values of a node, given those of its source."""
+    if kind == ZERO_NORMAL:
+        at[axis] = 0.0
+    elif kind == SET:
+        for c in range(at.shape[0]):
+            at[c] = value[c]
+    elif kind == MIRROR:
+        for c in range(at.shape[0]):
+            at[c] = -there[c] if c == axis else there[c]
+    elif kind == GRADIENT:
+        for c in range(at.shape[0]):
+            at[c] = there[c] - value[c]
 
 
 @kernel
@@ -102,13 +106,14 @@ def forget(active: Any, touched: Any, fields: NodalFields) -> None:
 
 
 @kernel
-def forget_motion(active: Any, nodal: NodalFields) -> None:
-    """Stop all materials at nodes that were active for one: contact moves those too that no particle touches."""
+def forget_motion(active: Any, touched: Any, nodal: NodalFields) -> None:
+    """Stop materials at nodes that were active for one and that they do not touch: contact moves them there too."""
     for m in range(nodal.mass.shape[0]):
         for n in range(active.shape[0]):
             i = active[n]
-            for c in range(3):
-                nodal.velocity[m, i, c] = nodal.velocity_star[m, i, c] = nodal.acceleration[m, i, c] = 0.0
+            if not touched[m, i]:
+                for c in range(3):
+                    nodal.velocity[m, i, c] = nodal.velocity_star[m, i, c] = nodal.acceleration[m, i, c] = 0.0
 
 
 @kernel

@@ -18,7 +18,7 @@ CELLS = (4, 3, 2)
 class NoSymmetry:
     """Boundary conditions without a face of symmetry."""
 
-    def apply_symmetry(self, vectors: Any, material: int) -> None:
+    def apply_symmetry(self, vectors: Any, material: int, touched: Any = None) -> None:
         """Change nothing."""
 
 

@@ -175,7 +175,7 @@ def test_axisymmetric_normals_weight_density_with_gradients_per_cell(scene):
 
 def test_symmetry_is_applied_to_normals_before_they_become_unit_vectors(scene):
     class NoZ:
-        def apply_symmetry(self, vectors, material):
+        def apply_symmetry(self, vectors, material, touched=None):
             vectors[:, 2] = 0.0
 
     s = two_blocks(scene, ((0, 0, 0), (0, 0, 0)), boundary_conditions=NoZ(), colinear_normals=False)
