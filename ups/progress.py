@@ -188,6 +188,9 @@ class Interrupts(Observer):
 @contextmanager
 def compilation_notice(stream: TextIO | None = None) -> Iterator[None]:
     """Say so while kernels are compiled, as happens when a deck uses models that were never run together."""
+    import solver.jit  # noqa: F401 - first, as it imports numba without what only compiling needs
+
+    # isort: split
     from numba.core.event import Event, Listener, install_listener
 
     class Notice(Listener):

@@ -309,8 +309,7 @@ class _OwnerTable(NamedTuple):
     @classmethod
     def build(cls, level: Level) -> _OwnerTable:
         cuts = tuple(
-            np.unique([p.low[d] for p in level.patches] + [p.high[d] for p in level.patches])
-            for d in range(3)
+            np.array(sorted({cut for p in level.patches for cut in (p.low[d], p.high[d])})) for d in range(3)
         )
         table = np.full([len(cut) - 1 for cut in cuts], -1, dtype=np.int32)
         for position, patch in enumerate(level.patches):
