@@ -26,6 +26,7 @@ from solver.domains.reach import layers_reached
 from solver.flags import Flags
 from solver.grid import FACES, Grid, NodeBlock
 from solver.interpolation.shape import Sums
+from solver.jit.ahead import compile_ahead
 from solver.kernels import nodes, settle, stress, transfer
 from solver.kernels.chunks import number_of_chunks
 from solver.kernels.transfer import CHANNELS, EXTERNAL_FORCE, GATHERED, MOTION_SUMS, Transfer
@@ -222,6 +223,12 @@ class Simulation:
         self._cell_stretch = np.zeros(math.prod(b - a for a, b in zip(low, high, strict=True)))
 
     # ---- the time step -------------------------------------------------------------------------------------
+
+    def compile_ahead(self, processes: int) -> None:
+        """Have so many processes compile the kernels of the stress update, which the first step needs last."""
+        step = self.constants_of_step(0.0)
+        loops = [self._stress_loop(body, self._particle_cells(body), step) for body in self.bodies]
+        compile_ahead([job for loop in loops for job in stress.kernels_of(loop)], processes)
 
     def initial_time_step(self) -> float:
         """The stable first step, from the models' initial wave speeds."""
@@ -617,8 +624,19 @@ class Simulation:
         step = self.constants_of_step(dt)
         if self.flags.pressure_stabilization:
             self._average_dilatation(body, cells, dt)
+        loop = self._stress_loop(body, cells, step)
+        stressed = stress.total(self._in_chunks(len(body.particles), partial(stress.update_stresses, loop)))
+        if not stressed.finite and not self._fault:
+            self._fault = (
+                f"material {body.index} ({body.name}) has a stress or position that is not a finite number "
+                f"after step {self.step_number + 1} at time {self.time + dt:g}"
+            )
+        self._add("StrainEnergy", body, stressed.strain_energy)
+        self._add("TotalVolumeDeformed", body, stressed.volume)
+        return self._limit(body, stressed.wave_speed)
 
-        loop = stress.StressLoop(
+    def _stress_loop(self, body: Body, cells: Array, step: Step) -> stress.StressLoop:
+        return stress.StressLoop(
             body.numeric_model,
             body.state,
             body.failure,
@@ -629,15 +647,6 @@ class Simulation:
             cells,
             self._cell_stretch,
         )
-        stressed = stress.total(self._in_chunks(len(body.particles), partial(stress.update_stresses, loop)))
-        if not stressed.finite and not self._fault:
-            self._fault = (
-                f"material {body.index} ({body.name}) has a stress or position that is not a finite number "
-                f"after step {self.step_number + 1} at time {self.time + dt:g}"
-            )
-        self._add("StrainEnergy", body, stressed.strain_energy)
-        self._add("TotalVolumeDeformed", body, stressed.volume)
-        return self._limit(body, stressed.wave_speed)
 
     def _neighbourhood(self, body: Body, dt: float) -> Neighbourhood | None:
         """Where the particles lie at the start of the step, for a model whose particles feel each other."""

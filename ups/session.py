@@ -177,7 +177,9 @@ def _build(
     from ups.factory import build
 
     simulation: Simulation = build(deck, ranks, domains)
-    simulation.team = Team(threads or max(1, available_cores() // ranks.sharing_cores))
+    cores = max(1, available_cores() // ranks.sharing_cores)
+    simulation.team = Team(threads or cores)
+    simulation.compile_ahead(cores - 1)
     return simulation
 
 

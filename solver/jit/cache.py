@@ -9,7 +9,9 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
+import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -72,6 +74,7 @@ if numba.experimental is _classes:
     _on_demand(_classes.__name__)
 
 from llvmlite import binding as llvm  # noqa: E402 - comes with numba
+from numba.core import event  # noqa: E402 - after numba
 from numba.core.caching import (  # noqa: E402 - after numba
     CompileResultCacheImpl,
     FunctionCache,
@@ -82,6 +85,12 @@ from numba.core.runtime import _nrt_python  # noqa: E402 - after numba
 
 # For a numba that was imported before this module, and so did not read the environment set above.
 numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+
+
+SECONDS_BETWEEN_LOOKS = 0.02
+
+_elsewhere: dict[tuple[Kernel, Any], subprocess.Popen[bytes]] = {}
+"""Processes that compile a kernel for arguments of some types."""
 
 
 class Kernel(CPUDispatcher):
@@ -98,7 +107,20 @@ class Kernel(CPUDispatcher):
         """Machine code for arguments of some types."""
         if not self.overloads:
             self.enable_caching()  # now, as most kernels are never called in a run
+        compiler = _elsewhere.get((self, sig))  # several threads may ask
+        if compiler is not None and compiler.poll() is None:
+            with event.trigger_event("numba:compile", data={"dispatcher": self, "args": sig}):
+                while compiler.poll() is None and not self.is_stored(sig):
+                    time.sleep(SECONDS_BETWEEN_LOOKS)
         return super().compile(sig)
+
+    def is_stored(self, sig: Any) -> bool:
+        """Whether machine code for arguments of some types is on the disk."""
+        return _Cache(self.py_func).holds(sig, self.targetctx)
+
+    def is_compiled_by(self, process: subprocess.Popen[bytes], sig: Any) -> None:
+        """Another process compiles it for arguments of some types; it is waited for when it is needed."""
+        _elsewhere[self, sig] = process
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Refuse to be called by another kernel: what is kept of a kernel cannot be made part of one."""
@@ -142,6 +164,10 @@ class _Files(IndexDataCacheFile):
         except OSError:
             return None
 
+    def holds(self, key: Any) -> bool:
+        """Whether there is such a file."""
+        return os.path.exists(self._data_path(self._name(key)))
+
     def _name(self, key: Any) -> str:
         types, *others = key
         text = repr((self._version, self._source_stamp, others, [_spelled(kind) for kind in types]))
@@ -164,6 +190,10 @@ class _Cache(FunctionCache):
         super().__init__(function)
         stamp = self._impl.locator.get_source_stamp()
         self._cache_file = _Files(self._cache_path, self._impl.filename_base, stamp)
+
+    def holds(self, sig: Any, target_context: Any) -> bool:
+        """Whether the kernel for arguments of some types is on the disk."""
+        return self._cache_file.holds(self._index_key(sig, target_context.codegen()))
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """The kernel for arguments of some types, or None."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from solver.declare import Vector
 from solver.dispatch import inline, singly, takes_lanes
 from solver.jit import kernel
@@ -245,9 +247,22 @@ def update_stresses(loop: StressLoop, first: int, last: int, sums: Any) -> None:
     :class:`Stressed`.
     """
     particles = len(loop.particles)
-    if particles < WIDTH or not takes_lanes(stress_update, loop.model):
+    if not _by_eight(loop):
         update_singly(loop, first, last, sums)
         return
     update_by_eight(loop, first, last, sums)
     if particles % WIDTH and first <= particles // CHUNK < last:
         update_rest(loop, last - 1, sums)
+
+
+def _by_eight(loop: StressLoop) -> bool:
+    return len(loop.particles) >= WIDTH and takes_lanes(stress_update, loop.model)
+
+
+def kernels_of(loop: StressLoop) -> list[tuple[Any, tuple[Any, ...]]]:
+    """The kernels that :func:`update_stresses` will call, each with arguments of the right types."""
+    sums = np.zeros((0, STRESS_SUMS))
+    if not _by_eight(loop):
+        return [(update_singly, (loop, 0, 0, sums))]
+    rest = [(update_rest, (loop, 0, sums))] if len(loop.particles) % WIDTH else []
+    return [(update_by_eight, (loop, 0, 0, sums)), *rest]
