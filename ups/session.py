@@ -177,9 +177,8 @@ def _build(
     from ups.factory import build
 
     simulation: Simulation = build(deck, ranks, domains)
-    cores = max(1, available_cores() // ranks.sharing_cores)
-    simulation.team = Team(threads or cores)
-    simulation.compile_ahead(cores - 1)
+    simulation.team = Team(threads or max(1, available_cores() // ranks.sharing_cores))
+    simulation.compile_ahead(simulation.team.threads - 1)
     return simulation
 
 

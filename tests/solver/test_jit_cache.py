@@ -117,3 +117,34 @@ print(importlib.metadata.version("numba") == numba.__version__, numba.experiment
 """
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert run.stdout.split() == ["True", "True"]
+
+
+AHEAD = """
+import importlib, json, sys
+import numpy as np
+import solver.jit.cache
+from solver.jit.ahead import compile_ahead
+from total import total
+
+record, values = importlib.import_module("first").Law(2.0, np.zeros(1)), np.arange(4.0)
+compile_ahead([(total, (record, values)), (total, (record, values))], 3)
+elsewhere = list(solver.jit.cache._elsewhere.values())
+if sys.argv[1] == "killed":
+    elsewhere[0].kill()
+total(record, values)
+compile_ahead([(total, (record, values))], 3)
+hits = sum(total.stats.cache_hits.values())
+print(json.dumps([record.sum[0], hits, len(elsewhere), len(solver.jit.cache._elsewhere)]))
+"""
+
+
+@pytest.mark.parametrize(("fate", "loaded"), [("done", 1), ("killed", 0)])
+def test_another_process_compiles_what_is_needed_later(tmp_path: Path, fate: str, loaded: int) -> None:
+    """Once however often it is asked for; where it comes to harm, who needs the kernel compiles it."""
+    for name, text in {"total": MODULE, "first": LAW}.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    path = os.pathsep.join([str(tmp_path), str(Path(__file__).parents[2])])
+    environment = {**os.environ, "PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
+    command = [sys.executable, "-c", AHEAD, fate]
+    run = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    assert json.loads(run.stdout) == [12.0, loaded, 1, 1]
