@@ -11,8 +11,9 @@ OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz
 """Division by zero gives inf as in numpy. Sums are not reordered and divisions not replaced: where a particle just
 touches a node, the last digit of its position decides whether the node takes part, as it does in Uintah."""
 
-INLINED = {**OPTIONS, "forceinline": True}
-"""Models and helpers are made part of the kernel that calls them: stresses take half to a fifth of the time."""
+INLINED = {**OPTIONS, "forceinline": True, "no_cfunc_wrapper": True}
+"""Models and helpers are made part of the kernel that calls them: stresses take half to a fifth of the time. C calls
+none of them, so they need no second form for it."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
