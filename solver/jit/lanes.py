@@ -10,6 +10,7 @@ from typing import Any
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.types.containers import BaseTuple
+from numba.core.typing.templates import AbstractTemplate, infer_global
 from numba.extending import intrinsic, lower_builtin, overload, type_callable
 
 from solver import elementary, lanes, tensor
@@ -52,33 +53,38 @@ def _make_lanes(context: Any, builder: Any, sig: Any, args: Any) -> Any:
 # ---- arithmetic and comparisons ------------------------------------------------------------------------------
 
 
-def _of_two(operation: Callable[..., Any], answer: Any = lanes_type) -> Any:
-    """An intrinsic on two lanes, lane by lane."""
-
-    @intrinsic
-    def combine(context: Any, a: Any, b: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            return operation(builder, *args)
-
-        return answer(lanes_type, lanes_type), generate
-
-    return combine
+SINGLE = {lanes_type: types.Number, mask_type: types.Boolean, types.intp: types.Integer}
+"""What goes where lanes, a mask or a number of a lane is wanted."""
 
 
-def _let(wide: type, single: type, combine: Any, *functions: Callable[..., Any]) -> None:
-    """Tell numba how functions of two go with lanes, or with lanes and a number; or with masks and truths."""
+def _direct(
+    function: Callable[..., Any], generate: Callable[..., Any], answer: Any, *given: Any, exact: int = 0
+) -> None:
+    """Tell numba the instructions of a function, to stand where it is called: sooner compiled than a function is.
 
-    def choose(a: Any, b: Any) -> Any:
-        if any(isinstance(t, wide) for t in (a, b)) and all(isinstance(t, wide | single) for t in (a, b)):
-            return lambda a, b: combine(a, b)
-        return None
+    It takes values of the types ``given``; the first ``exact`` as they are, of the others all but one may be single.
+    """
 
+    class Instructions(AbstractTemplate):
+        key = function
+
+        def generic(self, args: Any, kws: Any) -> Any:
+            if kws or len(args) != len(given) or args[:exact] != given[:exact]:
+                return None
+            same = [a == wanted for a, wanted in zip(args, given, strict=True)]
+            single = [isinstance(a, SINGLE[wanted]) for a, wanted in zip(args, given, strict=True)]
+            return answer(*given) if any(same) and all(map(operator.or_, same, single)) else None
+
+    infer_global(function, types.Function(Instructions))
+    lower_builtin(function, *given)(lambda context, builder, signature, args: generate(builder, *args))
+
+
+def _of_two(
+    instruction: Callable[..., Any], *functions: Callable[..., Any], answer: Any = lanes_type
+) -> None:
+    """Functions of two lanes, or of lanes and a number, lane by lane."""
     for function in functions:
-        overload(function, jit_options=INLINED, strict=False)(choose)
-
-
-def _let_lanes(combine: Any, *functions: Callable[..., Any]) -> None:
-    _let(LanesType, types.Number, combine, *functions)
+        _direct(function, instruction, answer, lanes_type, lanes_type)
 
 
 def _pick(builder: Any, comparison: str, a: Any, b: Any) -> Any:
@@ -86,15 +92,13 @@ def _pick(builder: Any, comparison: str, a: Any, b: Any) -> Any:
     return builder.select(builder.fcmp_ordered(comparison, b, a), b, a)
 
 
-_let_lanes(_of_two(lambda builder, a, b: builder.fadd(a, b, flags=FASTMATH)), operator.add, operator.iadd)
-_let_lanes(_of_two(lambda builder, a, b: builder.fsub(a, b, flags=FASTMATH)), operator.sub, operator.isub)
-_let_lanes(_of_two(lambda builder, a, b: builder.fmul(a, b, flags=FASTMATH)), operator.mul, operator.imul)
-_let_lanes(_of_two(lambda builder, a, b: builder.fdiv(a, b, flags=FASTMATH)), operator.truediv)
-_let_lanes(_of_two(lambda builder, a, b: _pick(builder, ">", a, b)), max)
-_let_lanes(_of_two(lambda builder, a, b: _pick(builder, "<", a, b)), min)
-_let_lanes(
-    _of_two(lambda builder, a, b: builder.uitofp(builder.fcmp_ordered(">", a, b), VECTOR)), lanes.above
-)
+_of_two(lambda b, x, y: b.fadd(x, y, flags=FASTMATH), operator.add, operator.iadd)
+_of_two(lambda b, x, y: b.fsub(x, y, flags=FASTMATH), operator.sub, operator.isub)
+_of_two(lambda b, x, y: b.fmul(x, y, flags=FASTMATH), operator.mul, operator.imul)
+_of_two(lambda b, x, y: b.fdiv(x, y, flags=FASTMATH), operator.truediv)
+_of_two(lambda b, x, y: _pick(b, ">", x, y), max)
+_of_two(lambda b, x, y: _pick(b, "<", x, y), min)
+_of_two(lambda b, x, y: b.uitofp(b.fcmp_ordered(">", x, y), VECTOR), lanes.above)
 for _operator, _sign in (
     (operator.lt, "<"),
     (operator.le, "<="),
@@ -102,58 +106,39 @@ for _operator, _sign in (
     (operator.ge, ">="),
     (operator.eq, "=="),
 ):
-    _let_lanes(_of_two(lambda b, x, y, sign=_sign: b.fcmp_ordered(sign, x, y), mask_type), _operator)
-_let_lanes(_of_two(lambda builder, a, b: builder.fcmp_unordered("!=", a, b), mask_type), operator.ne)
+    _of_two(lambda b, x, y, sign=_sign: b.fcmp_ordered(sign, x, y), _operator, answer=mask_type)
+_of_two(lambda b, x, y: b.fcmp_unordered("!=", x, y), operator.ne, answer=mask_type)
 
-
-@intrinsic
-def _both(context: Any, a: Any, b: Any) -> Any:
-    return mask_type(mask_type, mask_type), lambda _, builder, signature, args: builder.and_(*args)
-
-
-@intrinsic
-def _either(context: Any, a: Any, b: Any) -> Any:
-    return mask_type(mask_type, mask_type), lambda _, builder, signature, args: builder.or_(*args)
-
-
-_let(MaskType, types.Boolean, _both, operator.and_, operator.iand)
-_let(MaskType, types.Boolean, _either, operator.or_, operator.ior)
-
-
-@intrinsic
-def _opposite(context: Any, a: Any) -> Any:
-    return mask_type(mask_type), lambda _, builder, signature, args: builder.not_(args[0])
+for _operator in (operator.and_, operator.iand):
+    _direct(_operator, lambda b, x, y: b.and_(x, y), mask_type, mask_type, mask_type)
+for _operator in (operator.or_, operator.ior):
+    _direct(_operator, lambda b, x, y: b.or_(x, y), mask_type, mask_type, mask_type)
+_direct(lanes.negation, lambda b, x: b.not_(x), mask_type, mask_type)
 
 
 @overload(lanes.negation, jit_options=INLINED, strict=False)
 def _negation(mask: Any) -> Any:
-    return (lambda mask: _opposite(mask)) if isinstance(mask, MaskType) else (lambda mask: not mask)
+    return (lambda mask: not mask) if isinstance(mask, types.Boolean) else None
 
 
-@intrinsic
-def _bits(context: Any, mask: Any) -> Any:
+def _bits(builder: Any, mask: Any) -> Any:
     """The truths of a mask as the bits of a number."""
+    return builder.bitcast(mask, ir.IntType(WIDTH))
 
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.bitcast(args[0], ir.IntType(WIDTH))
 
-    return types.uint8(mask_type), generate
+_TRUTHS = ir.IntType(WIDTH)
+_direct(lanes.anywhere, lambda b, x: b.icmp_unsigned("!=", _bits(b, x), _TRUTHS(0)), types.boolean, mask_type)
+_direct(
+    lanes.everywhere, lambda b, x: b.icmp_unsigned("==", _bits(b, x), _TRUTHS(255)), types.boolean, mask_type
+)
+for _answer in (lanes_type, mask_type):
+    _direct(lanes.where, lambda b, *args: b.select(*args), _answer, mask_type, _answer, _answer, exact=1)
 
 
 @overload(lanes.anywhere, jit_options=INLINED, strict=False)
-def _anywhere(mask: Any) -> Any:
-    return (lambda mask: _bits(mask) != 0) if isinstance(mask, MaskType) else (lambda mask: mask)
-
-
 @overload(lanes.everywhere, jit_options=INLINED, strict=False)
-def _everywhere(mask: Any) -> Any:
-    return (lambda mask: _bits(mask) == 255) if isinstance(mask, MaskType) else (lambda mask: mask)
-
-
-@intrinsic
-def _select(context: Any, mask: Any, a: Any, b: Any) -> Any:
-    answer = mask_type if all(isinstance(t, MaskType | types.Boolean) for t in (a, b)) else lanes_type
-    return answer(mask_type, answer, answer), lambda _, builder, signature, args: builder.select(*args)
+def _of_one_truth(condition: Any) -> Any:
+    return (lambda condition: condition) if isinstance(condition, types.Boolean) else None
 
 
 def _select_tensor(condition: Any, a: Any, b: Any) -> Any:
@@ -175,9 +160,7 @@ def _select_tensor(condition: Any, a: Any, b: Any) -> Any:
 def _where(condition: Any, a: Any, b: Any) -> Any:
     if not isinstance(condition, MaskType):
         return lambda condition, a, b: a if condition else b
-    if isinstance(a, TensorType):
-        return _select_tensor
-    return lambda condition, a, b: _select(condition, a, b)
+    return _select_tensor if isinstance(a, TensorType) else None
 
 
 @intrinsic
@@ -195,19 +178,15 @@ def _like(value: Any, pattern: Any) -> Any:
 # ---- functions of one ----------------------------------------------------------------------------------------
 
 
-def _of_one(name: str) -> Any:
+def _of_one(name: str) -> Callable[..., Any]:
     """LLVM's function of that name, lane by lane."""
+    kind = ir.FunctionType(VECTOR, [VECTOR])
 
-    @intrinsic
-    def call(context: Any, a: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            kind = ir.FunctionType(VECTOR, [VECTOR])
-            function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{WIDTH}f64")
-            return builder.call(function, args)
+    def generate(builder: Any, a: Any) -> Any:
+        function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{WIDTH}f64")
+        return builder.call(function, [a])
 
-        return lanes_type(lanes_type), generate
-
-    return call
+    return generate
 
 
 def _let_one(function: Callable[..., Any], body: Callable[..., Any]) -> None:
@@ -218,16 +197,16 @@ def _let_one(function: Callable[..., Any], body: Callable[..., Any]) -> None:
         return body if isinstance(a, LanesType) else None
 
 
-_floor_of, _sqrt_of, _abs_of = _of_one("floor"), _of_one("sqrt"), _of_one("fabs")
-_let_one(math.sqrt, lambda a: _sqrt_of(a))
-_let_one(abs, lambda a: _abs_of(a))
+_direct(math.sqrt, _of_one("sqrt"), lanes_type, lanes_type)
+_direct(abs, _of_one("fabs"), lanes_type, lanes_type)
+_direct(lanes.floor, _of_one("floor"), lanes_type, lanes_type)
 _let_one(math.exp, elementary.exponential)
 _let_one(math.log, elementary.logarithm)
 _let_one(math.sinh, elementary.hyperbolic_sine)
 _let_one(math.cosh, elementary.hyperbolic_cosine)
 _let_one(math.tanh, elementary.hyperbolic_tangent)
 _let_one(math.erf, elementary.error_function)
-_let_one(math.isfinite, lambda a: _abs_of(a) < math.inf)
+_let_one(math.isfinite, lambda a: abs(a) < math.inf)
 _let_one(operator.neg, lambda a: -1.0 * a)
 
 
@@ -240,7 +219,7 @@ def _power(a: Any, b: Any) -> Any:
 
 @overload(lanes.floor, jit_options=INLINED, strict=False)
 def _floor(a: Any) -> Any:
-    return (lambda a: _floor_of(a)) if isinstance(a, LanesType) else (lambda a: float(math.floor(a)))
+    return (lambda a: float(math.floor(a))) if isinstance(a, types.Number) else None
 
 
 INTEGERS = ir.VectorType(I64, WIDTH)
@@ -254,16 +233,6 @@ def _integers(number: int) -> Any:
 FRACTION_BITS = 52
 BIAS = 1023
 """Of the exponents of double precision."""
-
-
-def _of_bits(operation: Callable[..., Any]) -> Any:
-    """An intrinsic on the bits of lanes."""
-
-    @intrinsic
-    def call(context: Any, a: Any) -> Any:
-        return lanes_type(lanes_type), lambda _, builder, signature, args: operation(builder, args[0])
-
-    return call
 
 
 def _exponent(builder: Any, a: Any) -> Any:
@@ -281,41 +250,26 @@ def _power_of_two(builder: Any, n: Any) -> Any:
     return builder.bitcast(builder.shl(biased, _integers(FRACTION_BITS)), VECTOR)
 
 
-_exponent_of, _mantissa_of = _of_bits(_exponent), _of_bits(_mantissa)
-_power_of_two_of = _of_bits(_power_of_two)
-_let_one(elementary.exponent, lambda a: _exponent_of(a))
-_let_one(elementary.mantissa, lambda a: _mantissa_of(a))
-_let_one(elementary.power_of_two, lambda a: _power_of_two_of(a))
+_direct(elementary.exponent, _exponent, lanes_type, lanes_type)
+_direct(elementary.mantissa, _mantissa, lanes_type, lanes_type)
+_direct(elementary.power_of_two, _power_of_two, lanes_type, lanes_type)
 
 
-@intrinsic
-def _add_scaled_lanes(context: Any, total: Any, part: Any, factor: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        kind = ir.FunctionType(VECTOR, [VECTOR] * 3)
-        fma = cgutils.get_or_insert_function(builder.module, kind, f"llvm.fma.v{WIDTH}f64")
-        return builder.call(fma, [args[1], args[2], args[0]])
-
-    return lanes_type(lanes_type, lanes_type, lanes_type), generate
+def _multiply_add(builder: Any, total: Any, part: Any, factor: Any) -> Any:
+    kind = ir.FunctionType(VECTOR, [VECTOR] * 3)
+    fma = cgutils.get_or_insert_function(builder.module, kind, f"llvm.fma.v{WIDTH}f64")
+    return builder.call(fma, [part, factor, total])
 
 
-@overload(lanes.add_scaled, jit_options=INLINED, strict=False)
-def _add_scaled(total: Any, part: Any, factor: Any) -> Any:
-    return lambda total, part, factor: _add_scaled_lanes(total, part, factor)
+_direct(lanes.add_scaled, _multiply_add, lanes_type, lanes_type, lanes_type, lanes_type)
 
 
 # ---- lanes of lanes ------------------------------------------------------------------------------------------
 
 
-@intrinsic
-def _lane(context: Any, a: Any, k: Any) -> Any:
-    return types.float64(lanes_type, types.intp), lambda _, builder, signature, args: builder.extract_element(
-        *args
-    )
-
-
-@overload(operator.getitem, jit_options=INLINED, strict=False)
-def _get_lane(a: Any, k: Any) -> Any:
-    return (lambda a, k: _lane(a, k)) if isinstance(a, LanesType) else None
+_direct(
+    operator.getitem, lambda b, a, k: b.extract_element(a, k), types.float64, lanes_type, types.intp, exact=1
+)
 
 
 @overload(lanes.sum_of, jit_options=INLINED, strict=False)
