@@ -8,9 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numba.core.codegen import JITCodeLibrary
 
-from solver.jit import kernel
+from solver.dispatch import inline
+from solver.jit import kernel, kernel_with_scratch
 
 PROGRAM = """
 import os
@@ -35,7 +38,7 @@ def test_kernels_are_cached_by_the_state_of_the_sources_whoever_imports_numba_fi
 
 
 MODULE = """
-from solver.jit import kernel
+from solver.jit import kernel, kernel_with_scratch
 
 @kernel
 def total(record, values):
@@ -148,3 +151,42 @@ def test_another_process_compiles_what_is_needed_later(tmp_path: Path, fate: str
     command = [sys.executable, "-c", AHEAD, fate]
     run = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
     assert json.loads(run.stdout) == [12.0, loaded, 1, 1]
+
+
+def test_helpers_get_no_machine_code_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = []
+    finish = JITCodeLibrary._finalize_specific
+    monkeypatch.setattr(
+        JITCodeLibrary, "_finalize_specific", lambda self: (made.append(self.name), finish(self))
+    )
+
+    @inline
+    def twice(number):
+        return number + number
+
+    @kernel
+    def double(numbers):
+        for i in range(len(numbers)):
+            numbers[i] = twice(numbers[i])
+
+    numbers = np.arange(3.0)
+    double(numbers)
+    assert [name for name in made if "twice" in name or "double" in name] == [double.__qualname__]
+    assert numbers.tolist() == [0.0, 2.0, 4.0]
+
+
+def test_what_a_helper_knows_of_python_reaches_the_kernel_that_contains_it() -> None:
+    @inline
+    def root(number):
+        if number < 0.0:
+            raise ValueError("no root of", number)
+        return number**0.5
+
+    @kernel_with_scratch
+    def roots(numbers):
+        for i in range(len(numbers)):
+            numbers[i] = root(numbers[i])
+
+    with pytest.raises(ValueError, match="no root of") as raised:
+        roots(np.array([4.0, -1.0]))
+    assert raised.value.args == ("no root of", -1.0)
