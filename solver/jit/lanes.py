@@ -210,10 +210,21 @@ _let_one(math.isfinite, lambda a: abs(a) < math.inf)
 _let_one(operator.neg, lambda a: -1.0 * a)
 
 
+WHOLE_POWERS: dict[int, Callable[..., Any]] = {
+    2: lambda a, b: a * a,
+    3: lambda a, b: a * a * a,
+    4: lambda a, b: (a * a) * (a * a),
+}
+
+
 @overload(operator.pow, jit_options=INLINED, strict=False)
 def _power(a: Any, b: Any) -> Any:
+    if isinstance(a, LanesType) and isinstance(b, types.IntegerLiteral):
+        return WHOLE_POWERS.get(b.literal_value)
     if isinstance(a, LanesType) and isinstance(b, LanesType | types.Float):
         return elementary.power
+    if isinstance(a, types.Float) and isinstance(b, LanesType):
+        return lambda a, b: elementary.power(lanes.every(a), b)
     return None
 
 

@@ -129,6 +129,22 @@ def test_comparisons_choose_number_by_number(run):
     np.testing.assert_array_equal(results[10], [B.sum(), 7.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 
 
+@kernel
+def whole_powers(rows, results):
+    a = lanes_at(rows, 0, 0)
+    put_lanes(results, 0, 0, a**2)
+    put_lanes(results, 1, 0, a**3)
+    put_lanes(results, 2, 0, a**4)
+    put_lanes(results, 3, 0, 2.5**a)
+
+
+def test_powers():
+    results = new_rows(4, 8)
+    whole_powers(np.array([B]), results)
+    np.testing.assert_array_equal(results[:3], [B * B, B * B * B, (B * B) * (B * B)])
+    np.testing.assert_allclose(results[3], 2.5**B, rtol=2e-15)
+
+
 def test_what_holds_for_eight_holds_for_one():
     assert (where(True, 1.0, 2.0), where(False, 1.0, 2.0), like(3.0, 1.0)) == (1.0, 2.0, 3.0)
     assert (sum_of(2.5), largest_of(-1.0), floor(-0.5)) == (2.5, -1.0, -1.0)
