@@ -9,7 +9,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import model
-from solver.dispatch import implements, inline, lanewise, singly
+from solver.dispatch import implements, inline, lanewise
 from solver.lanes import anywhere, like, negation, where
 from solver.materials.constitutive import (
     DELETE,
@@ -525,12 +525,6 @@ def grown_porosity(model: Any, porosity: float, flow: Flow, motion: Kinematics, 
     return where(flow.plastic, porosity + dt * rate, porosity)
 
 
-@singly
-def largest_principal_value(stress: Tensor) -> float:
-    """The largest principal value of a symmetric tensor."""
-    return principal_values(stress).first
-
-
 @inline
 def fails(
     model: Any,
@@ -546,7 +540,7 @@ def fails(
     """
     failed = flow.melted
     if model.check_max_stress_failure:
-        failed = failed | (largest_principal_value(stress) > model.critical_stress)
+        failed = failed | (principal_values(stress).first > model.critical_stress)
     if model.check_TEPLA_failure_criterion:
         failed = failed | (flow.plastic & (porosity > model.critical_porosity))
     if is_checked(model.stability_check):

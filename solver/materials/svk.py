@@ -8,7 +8,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -48,6 +48,7 @@ def _(model: SaintVenantKirchhoff, density: Any, temperature: Any) -> Any:
 
 
 @implements(stress_update, SaintVenantKirchhoff)
+@lanewise
 def svk_stress(
     model: SaintVenantKirchhoff, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:

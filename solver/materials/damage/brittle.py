@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import anywhere, negation, where
 from solver.materials.constitutive import Material, Step
 from solver.materials.damage import (
     DamagePoint,
@@ -91,22 +92,24 @@ def _(model: BrittleDamage, state: BrittleState, particles: Particles, patch: ND
 
 
 @implements(update_damage, BrittleDamage)
+@lanewise
 def _(
     model: BrittleDamage, state: BrittleState, p: int, point: DamagePoint, material: Material, step: Step
 ) -> DamageUpdate:
-    damage = abs(state.damage[p])
-    strain = largest_strain(point.deformation_gradient)
-    tau = math.sqrt(model.youngs_modulus) * abs(strain)
-    if trace(point.stress) >= 0.0 and tau > state.threshold[p]:
+    before, threshold = state.damage[p], state.threshold[p]
+    damage = abs(before)
+    tau = math.sqrt(model.youngs_modulus) * abs(largest_strain(point.deformation_gradient))
+    grows = (trace(point.stress) >= 0.0) & (tau > threshold)
+    recovers = negation(grows) & (damage > 0.0) & model.brittle_damage_allowRecovery
+    if anywhere(grows):
         D, start = model.brittle_damage_constant_D, model.brittle_damage_initial_threshold
         size = point.volume ** (1.0 / 3.0)
         energy = model.brittle_damage_fracture_energy * D
         C = start * size * (1.0 + D) / energy * math.log(1.0 + D)
         grown = MOST_DAMAGE / D * ((1.0 + D) / (1.0 + D * math.exp(-C * (tau - start))) - 1.0)
-        damage = min(grown, damage + model.brittle_damage_max_damage_increment)
-        state.threshold[p] = tau
-        state.damage[p] = damage
-    elif damage > 0.0 and model.brittle_damage_allowRecovery:
-        state.damage[p] = -damage
-        return DamageUpdate(point.stress * model.brittle_damage_recoveryCoeff, point.localized)
-    return DamageUpdate(point.stress * (1.0 - damage), point.localized)
+        damage = where(grows, min(grown, damage + model.brittle_damage_max_damage_increment), damage)
+        before = where(grows, damage, before)
+        state.threshold[p] = where(grows, tau, threshold)
+    state.damage[p] = where(recovers, -damage, before)
+    remains = where(recovers, model.brittle_damage_recoveryCoeff, 1.0 - damage)
+    return DamageUpdate(point.stress * remains, point.localized)

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.declare import Parameter, SubModel, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.constitutive import Material, Step
 from solver.materials.damage import DamagePoint, DamageUpdate, initialize_damage, update_damage
 from solver.materials.failure_criterion import Strength, failure
@@ -165,18 +166,15 @@ def _(model: ThresholdVar, state: ThresholdState, particles: Particles, patch: N
     state.strength[:] = draw_strengths(model, mean, deviation, particles.volume, patch)
 
 
-@inline
-def checked(model: Any, state: ThresholdState, p: int, point: DamagePoint) -> DamageUpdate:
-    """Failure of a particle that was sound."""
-    localized = point.localized
-    if localized == 0 and model.LocalizeParticles:
-        strength = Strength(state.strength[p], model.friction_angle, model.tensile_cutoff)
-        localized = failure(model.failure_criteria, point.stress, point.deformation_gradient, strength)
-    return DamageUpdate(point.stress, localized)
-
-
 @implements(update_damage, Threshold, ThresholdVar)
+@lanewise
 def _(
     model: Any, state: ThresholdState, p: int, point: DamagePoint, material: Material, step: Step
 ) -> DamageUpdate:
-    return checked(model, state, p, point)
+    localized = point.localized
+    sound = localized == 0
+    if model.LocalizeParticles and anywhere(sound):
+        strength = Strength(state.strength[p], model.friction_angle, model.tensile_cutoff)
+        found = failure(model.failure_criteria, point.stress, point.deformation_gradient, strength)
+        localized = where(sound, found, localized)
+    return DamageUpdate(point.stress, localized)

@@ -6,7 +6,8 @@ import math
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import where
 from solver.materials.failure_criterion import Strength, failure
 from solver.tensor import Tensor, principal_values
 
@@ -21,10 +22,11 @@ class MohrCoulombFailure(NamedTuple):
 
 
 @implements(failure, MohrCoulombFailure)
+@lanewise
 def _(criterion: MohrCoulombFailure, stress: Tensor, deformation_gradient: Tensor, strength: Strength) -> int:
     principal = principal_values(stress)
     phi = math.radians(strength.friction_angle)
     radius, centre = 0.5 * (principal.first - principal.third), 0.5 * (principal.first + principal.third)
-    if radius > strength.threshold * math.cos(phi) - centre * math.sin(phi):
-        return 2
-    return 1 if principal.first > strength.tensile_cutoff * strength.threshold else 0
+    shears = radius > strength.threshold * math.cos(phi) - centre * math.sin(phi)
+    tears = principal.first > strength.tensile_cutoff * strength.threshold
+    return where(shears, 2, where(tears, 1, 0))

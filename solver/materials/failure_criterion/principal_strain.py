@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.failure_criterion import Strength, failure
 from solver.tensor import Tensor, inverse, isotropic, principal_values
 
@@ -23,7 +24,8 @@ def largest_strain(deformation_gradient: Tensor) -> float:
 
 
 @implements(failure, MaximumPrincipalStrain)
+@lanewise
 def _(
     criterion: MaximumPrincipalStrain, stress: Tensor, deformation_gradient: Tensor, strength: Strength
 ) -> int:
-    return 1 if largest_strain(deformation_gradient) > strength.threshold else 0
+    return where(largest_strain(deformation_gradient) > strength.threshold, 1, 0)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import where
 from solver.materials.failure_criterion import Strength, failure
 from solver.tensor import Tensor, principal_values
 
@@ -16,7 +17,8 @@ class MaximumPrincipalStress(NamedTuple):
 
 
 @implements(failure, MaximumPrincipalStress)
+@lanewise
 def _(
     criterion: MaximumPrincipalStress, stress: Tensor, deformation_gradient: Tensor, strength: Strength
 ) -> int:
-    return 1 if principal_values(stress).first > strength.threshold else 0
+    return where(principal_values(stress).first > strength.threshold, 1, 0)

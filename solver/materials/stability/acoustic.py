@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.materials.stability import TangentModulus, is_checked, localizes
 from solver.tensor import Tensor, principal_values
 
@@ -58,11 +58,11 @@ def _(check: Acoustic) -> bool:
 
 
 @implements(localizes, Acoustic)
+@lanewise
 def _(check: Acoustic, stress: Tensor, rate: Tensor, tangent: TangentModulus) -> bool:
     det = band_determinant(stress, tangent)
-    if det.a <= 0.0 or det.c <= 0.0:
-        return True
-    return det.b < 0.0 and det.b * det.b >= 4.0 * det.a * det.c
+    at_an_end = (det.a <= 0.0) | (det.c <= 0.0)
+    return at_an_end | ((det.b < 0.0) & (det.b * det.b >= 4.0 * det.a * det.c))
 
 
 @inline
@@ -70,10 +70,9 @@ def has_four_bands(stress: Tensor, tangent: TangentModulus) -> bool:
     """Whether the determinant vanishes for four real slopes."""
     det = band_determinant(stress, tangent)
     discriminant = det.b * det.b - 4.0 * det.a * det.c
-    if discriminant < 0.0 or det.a == 0.0:
-        return False
-    root = math.sqrt(discriminant)
-    return (-det.b + root) / det.a >= 0.0 and (-det.b - root) / det.a >= 0.0
+    root = math.sqrt(max(discriminant, 0.0))
+    positive = ((root - det.b) * det.a >= 0.0) & ((-root - det.b) * det.a >= 0.0)
+    return (discriminant >= 0.0) & (det.a != 0.0) & positive
 
 
 @model("stability", "becker")
@@ -87,5 +86,6 @@ def _(check: Becker) -> bool:
 
 
 @implements(localizes, Becker)
+@lanewise
 def _(check: Becker, stress: Tensor, rate: Tensor, tangent: TangentModulus) -> bool:
     return has_four_bands(stress, tangent)

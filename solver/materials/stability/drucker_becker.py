@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.declare import model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
 from solver.materials.stability import TangentModulus, is_checked, localizes
 from solver.materials.stability.acoustic import has_four_bands
 from solver.materials.stability.drucker import work_rate_falls
@@ -23,5 +23,6 @@ def _(check: DruckerBecker) -> bool:
 
 
 @implements(localizes, DruckerBecker)
+@lanewise
 def _(check: DruckerBecker, stress: Tensor, rate: Tensor, tangent: TangentModulus) -> bool:
-    return work_rate_falls(rate, tangent) or has_four_bands(stress, tangent)
+    return work_rate_falls(rate, tangent) | has_four_bands(stress, tangent)

@@ -1,4 +1,7 @@
-"""What materials are made of answers for eight particles at once as in plain Python for one after the other."""
+"""What materials are made of answers for eight particles at once as in plain Python for one after the other.
+
+And what it answers for one of the eight does not depend on the seven beside it, to the last bit.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ import pytest
 from test_arruda_boyce import RUBBER as ARRUDA_BOYCE
 from test_cnh_mms import MODEL as CNH_MMS
 from test_comp_mooney_rivlin import RUBBER as MOONEY_RIVLIN
+from test_damage_and_erosion import COULOMB, STRAIN_LIMIT
 from test_flow_stress import STEEL_JC
 from test_hypo_elastic import MODEL as HYPO_ELASTIC
 from test_ideal_gas import AIR, GAS
@@ -19,6 +23,7 @@ from test_murnaghan_mpm import MODEL as MURNAGHAN
 from test_mw_visco_elastic import MODEL as MW_VISCO_ELASTIC
 from test_p_alpha import MODEL as POROUS
 from test_p_alpha import SAND
+from test_svk import RUBBER as SVK
 from test_swelling import PLASTIC, silicon
 from test_th_water import MODEL as TH_WATER
 from test_th_water import WATER as TH_WATER_MATERIAL
@@ -51,6 +56,8 @@ from solver.tensor import put_tensor, tensor_at, trace
 
 ROUNDING = 2.0e-12
 """Relative to the largest value among the eight."""
+
+BRITTLE = MODELS["damage"][5]._replace(youngs_modulus=1.0e11)
 
 
 class Parts(NamedTuple):
@@ -167,6 +174,17 @@ def test_properties_of_eight_particles(parts):
         )
 
 
+@pytest.mark.parametrize("parts", LAWS, ids=lambda parts: type(parts.flow_stress).__name__)
+def test_properties_do_not_depend_on_the_particles_beside(parts):
+    table, stresses = states()
+    together, among_likes = np.zeros((2, WIDTH, len(NAMES)))
+    properties_of_eight(parts, table, stresses, together)
+    for p in range(WIDTH):
+        likes = np.full(WIDTH, p)
+        properties_of_eight(parts, table[likes], stresses[likes], among_likes)
+        np.testing.assert_array_equal(among_likes, together[likes])
+
+
 @inline
 def respond(
     model: Any, state: Any, particles: Any, before: Any, material: Any, step: Any, p: Any, answers: Any
@@ -219,6 +237,7 @@ MATERIALS: dict[str, tuple[Any, ...]] = {
     "p_alpha": (POROUS._replace(shear_modulus=1.0e8, yield_stress=1.0e6), SAND),
     "rf_elastic_plastic": (silicon(PLASTIC), COPPER),
     "rigid": (Rigid(), COPPER),
+    "svk": (SVK, COPPER),
     "thermo_water": (TH_WATER, TH_WATER_MATERIAL, 0.02),
     "ucnh_var": (UCNH_VAR._replace(usePlasticity=True), COPPER),
     "visco_scram": (PBX._replace(use_time_temperature_equation=True, useObjectiveRate=True), EXPLOSIVE),
@@ -228,9 +247,9 @@ RATES = np.array([0.0, 1.0e1, 1.0e3, 1.0e4, 3.0e4, 1.0e5, 1.5e5, 2.0e5])[:, None
 
 
 class Octet:
-    """Eight particles, from one at rest to one that is crushed and let go."""
+    """Eight particles, from one at rest to one that is crushed and let go, or eight times the same one of these."""
 
-    def __init__(self, model: Any, material: Any, slower: float = 1.0) -> None:
+    def __init__(self, model: Any, material: Any, slower: float = 1.0, *, only: int | None = None) -> None:
         rng = np.random.default_rng(11)
         self.model, self.material = model, material
         self.particles: Any = new_arrays(Particles, WIDTH)
@@ -241,7 +260,11 @@ class Octet:
         if type(model) in initialize.registry:
             initialize(model, self.state, self.particles, material, np.zeros(WIDTH, np.int64))
         self.rates = (rng.normal(size=(WIDTH, 3, 3)) * 0.7 - 0.5 * np.eye(3)) * RATES * slower
+        self.warming = np.arange(float(WIDTH))
         self.answers = np.zeros((WIDTH, 5))
+        if only is not None:
+            for array in (*self.particles, *self.state, self.rates, self.warming):
+                array[:] = array[only].copy()
 
     def advance(self, step: Step, share: float, at_once: bool) -> None:
         """Deform the particles by a share of their rates and ask for their stress."""
@@ -258,7 +281,7 @@ class Octet:
             for p in range(WIDTH):
                 respond(*given, p, self.answers)
         particles.previous_temperature[:] = particles.temperature
-        particles.temperature[:] += np.arange(WIDTH)
+        particles.temperature[:] += self.warming
 
     @property
     def arrays(self) -> dict[str, np.ndarray]:
@@ -266,11 +289,14 @@ class Octet:
         return {**self.state._asdict(), "stress": self.particles.stress, "answers": self.answers.T}
 
 
+SHARES = (1.0, 1.0, -0.6, -0.9, 0.3)
+STEPS = [Step(1.0e-6, k * 1.0e-6, 1.0e-3, True, 0.2, 2.0, True) for k in range(len(SHARES))]
+
+
 @pytest.mark.parametrize("name", MATERIALS)
 def test_materials_of_eight_particles(name):
     eight, single = Octet(*MATERIALS[name]), Octet(*MATERIALS[name])
-    for k, share in enumerate((1.0, 1.0, -0.6, -0.9, 0.3)):
-        step = Step(1.0e-6, k * 1.0e-6, 1.0e-3, True, 0.2, 2.0, True)
+    for step, share in zip(STEPS, SHARES, strict=True):
         eight.advance(step, share, at_once=True)
         single.advance(step, share, at_once=False)
         for field, expected in single.arrays.items():
@@ -278,6 +304,20 @@ def test_materials_of_eight_particles(name):
             axes = tuple(range(1, expected.ndim)) if field == "answers" else None
             scale = np.abs(expected).max(axis=axes, keepdims=True)
             assert (np.abs(eight.arrays[field] - expected) <= ROUNDING * scale).all(), field
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_materials_do_not_depend_on_the_particles_beside(name):
+    together = Octet(*MATERIALS[name])
+    among_likes = [Octet(*MATERIALS[name], only=p) for p in range(WIDTH)]
+    for step, share in zip(STEPS, SHARES, strict=True):
+        for octet in (together, *among_likes):
+            octet.advance(step, share, at_once=True)
+        for p, likes in enumerate(among_likes):
+            for field, expected in together.arrays.items():
+                found = likes.arrays[field].T if field == "answers" else likes.arrays[field]
+                right = expected.T if field == "answers" else expected
+                np.testing.assert_array_equal(found, np.broadcast_to(right[p], right.shape), err_msg=field)
 
 
 @inline
@@ -315,47 +355,95 @@ FAILURES = {
     "johnson_cook, ZeroStress": (MODELS["damage"][1], ZeroStress(2.0e-5)),
     "hancock_mackenzie, AllowNoTension": (MODELS["damage"][2], AllowNoTension(2.0e-5)),
     "Threshold, AllowNoShear": (MODELS["damage"][3], AllowNoShear()),
-    "Brittle, PreserveStress": (MODELS["damage"][5]._replace(youngs_modulus=1.0e11), PreserveStress()),
+    "Threshold of strain, ZeroStress": (STRAIN_LIMIT, ZeroStress(2.0e-5)),
+    "Threshold of Coulomb, PreserveStress": (COULOMB, PreserveStress()),
+    "ThresholdVar, AllowNoTension": (MODELS["damage"][4], AllowNoTension(2.0e-5)),
+    "Brittle, PreserveStress": (BRITTLE, PreserveStress()),
+    "Brittle that recovers, AllowNoShear": (
+        BRITTLE._replace(brittle_damage_allowRecovery=True, brittle_damage_recoveryCoeff=0.7),
+        AllowNoShear(),
+    ),
 }
+
+
+BREAKABLE = ElasticPlastic(K, G, STEEL_JC, TEPLA_with_damage=True, failure_is_checked=True)
+
+
+class Fragments(NamedTuple):
+    """Particles, what they were made of and how they fail."""
+
+    particles: Any
+    state: Any
+    failure: Any
+
+    @property
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All that is known of the particles, by name."""
+        records = (self.particles, self.state, self.failure.damage_state, self.failure.erosion_state)
+        return {name: array for record in records for name, array in record._asdict().items()}
+
+
+def fragments(damage: Any, erosion: Any, only: int | None = None) -> Fragments:
+    """Eight particles, or eight times the same one of these, that flow under stresses of all signs.
+
+    One fails and one is removed in the step, two failed before.
+    """
+    rng = np.random.default_rng(13)
+    particles: Any = new_arrays(Particles, WIDTH)
+    state: Any = new_arrays(state_record(BREAKABLE), WIDTH)
+    failure = new_failure(damage, erosion, WIDTH)
+    initialize_damage(damage, failure.damage_state, particles, np.zeros(WIDTH, np.int64))
+    particles.deformation_gradient[:] += 0.1 * rng.normal(size=(WIDTH, 3, 3))
+    particles.velocity_gradient[:] = rng.normal(size=(WIDTH, 3, 3))
+    stress = rng.normal(size=(WIDTH, 3, 3)) + np.linspace(-2.0, 2.0, WIDTH)[:, None, None] * np.eye(3)
+    particles.stress[:] = 1.0e8 * (stress + stress.transpose(0, 2, 1))
+    particles.stress[5] = 0.0
+    particles.volume[:], particles.mass[:] = 1.0e-9, COPPER.density * 1.0e-9
+    particles.temperature[:] = 400.0
+    particles.localized[2] = particles.localized[7] = 1
+    particles.color[4], particles.color[1] = 1.0, 2.0
+    state.plastic_strain_rate[:] = 0.0, 1.0e5, 1.0e4, 0.1, 0.0, 3.0e4, 5.0e4, 1.0e5
+    state.porosity[:] = np.linspace(0.0, 0.49, WIDTH)
+    found = Fragments(particles, state, failure)
+    if only is not None:
+        for array in found.arrays.values():
+            array[:] = array[only].copy()
+    return found
+
+
+def fail_in_steps(some: Fragments, at_once: bool) -> None:
+    """Three steps, the stress the same but for damage and erosion."""
+    answers = np.zeros(WIDTH)
+    for k in range(3):
+        step = Step(1.0e-5, k * 1.0e-5, 1.0e-3, True, 0.2, 2.0, True)
+        given = (some.failure, BREAKABLE, some.state, some.particles, step)
+        if at_once:
+            fail_all(*given, answers)
+        else:
+            for p in range(WIDTH):
+                fail(*given, p, answers)
+        some.particles.localized[:] = answers
 
 
 @pytest.mark.parametrize("name", FAILURES)
 def test_failure_of_eight_particles(name):
     """Some flow, one fails and one is removed in the step, two failed before; some break by voids and damage."""
-    damage, erosion = FAILURES[name]
-    model = ElasticPlastic(K, G, STEEL_JC, TEPLA_with_damage=True, failure_is_checked=True)
-    found = []
-    for at_once in (True, False):
-        rng = np.random.default_rng(13)
-        particles: Any = new_arrays(Particles, WIDTH)
-        state: Any = new_arrays(state_record(model), WIDTH)
-        failure = new_failure(damage, erosion, WIDTH)
-        initialize_damage(damage, failure.damage_state, particles, np.zeros(WIDTH, np.int64))
-        particles.deformation_gradient[:] += 0.1 * rng.normal(size=(WIDTH, 3, 3))
-        particles.velocity_gradient[:] = rng.normal(size=(WIDTH, 3, 3))
-        stress = rng.normal(size=(WIDTH, 3, 3)) + np.linspace(-2.0, 2.0, WIDTH)[:, None, None] * np.eye(3)
-        particles.stress[:] = 1.0e8 * (stress + stress.transpose(0, 2, 1))
-        particles.stress[5] = 0.0
-        particles.volume[:], particles.mass[:] = 1.0e-9, COPPER.density * 1.0e-9
-        particles.temperature[:] = 400.0
-        particles.localized[2] = particles.localized[7] = 1
-        particles.color[4], particles.color[1] = 1.0, 2.0
-        state.plastic_strain_rate[:] = 0.0, 1.0e5, 1.0e4, 0.1, 0.0, 3.0e4, 5.0e4, 1.0e5
-        state.porosity[:] = np.linspace(0.0, 0.49, WIDTH)
-        answers = np.zeros(WIDTH)
-        for k in range(3):
-            step = Step(1.0e-5, k * 1.0e-5, 1.0e-3, True, 0.2, 2.0, True)
-            if at_once:
-                fail_all(failure, model, state, particles, step, answers)
-            else:
-                for p in range(WIDTH):
-                    fail(failure, model, state, particles, step, p, answers)
-            particles.localized[:] = answers
-        found.append((particles, failure))
-    (particles, failure), (expected, expected_failure) = found
-    assert (expected.localized[[2, 7, 4, 1]] == [1, 1, 1, DELETE]).all()
-    records = (particles, expected), (failure.damage_state, expected_failure.damage_state)
-    for ours, theirs in (*records, (failure.erosion_state, expected_failure.erosion_state)):
-        for field, right in theirs._asdict().items():
-            atol = ROUNDING * np.abs(right).max(initial=0.0)
-            np.testing.assert_allclose(getattr(ours, field), right, rtol=0.0, atol=atol, err_msg=field)
+    eight, single = fragments(*FAILURES[name]), fragments(*FAILURES[name])
+    fail_in_steps(eight, at_once=True)
+    fail_in_steps(single, at_once=False)
+    assert (single.particles.localized[[2, 7, 4, 1]] == [1, 1, 1, DELETE]).all()
+    for field, right in single.arrays.items():
+        atol = ROUNDING * np.abs(right).max(initial=0.0)
+        np.testing.assert_allclose(eight.arrays[field], right, rtol=0.0, atol=atol, err_msg=field)
+
+
+@pytest.mark.parametrize("name", FAILURES)
+def test_failure_does_not_depend_on_the_particles_beside(name):
+    together = fragments(*FAILURES[name])
+    fail_in_steps(together, at_once=True)
+    for p in range(WIDTH):
+        likes = fragments(*FAILURES[name], only=p)
+        fail_in_steps(likes, at_once=True)
+        for field, right in together.arrays.items():
+            expected = np.broadcast_to(right[p], right.shape)
+            np.testing.assert_array_equal(likes.arrays[field], expected, err_msg=field)

@@ -3,12 +3,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from solver.dispatch import inline
+from solver.jit import kernel
+from solver.lanes import WIDTH, Eight, where
 from solver.materials.stability import STABILITY, is_checked, localizes, tangent_modulus
 from solver.materials.stability.acoustic import Acoustic, Becker, band_determinant
 from solver.materials.stability.drucker import Drucker
 from solver.materials.stability.drucker_becker import DruckerBecker
 from solver.materials.stability.no_check import NoCheck
-from solver.tensor import Tensor
+from solver.tensor import Tensor, tensor_at
 
 BULK, SHEAR = 150.0e9, 69.0e9
 CHECKS = [NoCheck(), Drucker(), Becker(), DruckerBecker(), Acoustic()]
@@ -111,3 +114,34 @@ def test_no_check_checks_nothing():
     sigma, tangent = uniaxial(8.0e8, -60.0e9)
     assert not localizes(NoCheck(), tensor(sigma), tensor(sigma), tangent)
     assert [is_checked(c) for c in CHECKS] == [False, True, True, True, True]
+
+
+@inline
+def check_at(check, stresses, rates, hardening, p, answers):
+    normal = tensor_at(stresses, p) * 3.0
+    tangent = tangent_modulus(BULK, SHEAR, normal, hardening[p])
+    answers[p] = where(localizes(check, tensor_at(stresses, p), tensor_at(rates, p), tangent), 1.0, 0.0)
+
+
+@kernel
+def check_eight(check, stresses, rates, hardening, answers):
+    for start in range(0, answers.shape[0], WIDTH):
+        check_at(check, stresses, rates, hardening, Eight(start), answers)
+
+
+@pytest.mark.parametrize("check", CHECKS[1:], ids=lambda check: type(check).__name__)
+def test_eight_at_once_are_checked_as_one_after_the_other(check):
+    rng = np.random.default_rng(6)
+    stresses, rates = rng.normal(size=(2, 400, 3, 3))
+    stresses, rates = (a + a.transpose(0, 2, 1) for a in (stresses, rates))
+    stresses -= np.trace(stresses, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+    stresses *= 8.0e8 / np.sqrt(1.5) / np.linalg.norm(stresses, axis=(1, 2))[:, None, None]
+    rates[::2] = 1.0e-8 * stresses[::2] + 0.01 * rates[::2]  # as they flow
+    stresses[3] = 0.0
+    hardening = -4 * rng.uniform(-60.0e9, 5.0e9, 400) * 8.0e8**2
+    answers, expected = np.zeros((2, 400))
+    check_eight(check, stresses, rates, hardening, answers)
+    for p in range(400):
+        check_at(check, stresses, rates, hardening.tolist(), p, expected)
+    np.testing.assert_array_equal(answers, expected)
+    assert 0.1 < expected.mean() < 0.9
