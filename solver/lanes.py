@@ -117,7 +117,7 @@ def floor(a: Any) -> Any:
 
 
 def where(condition: Any, a: Any, b: Any) -> Any:
-    """``a`` where the condition holds, else ``b``: numbers, truths or tensors. Both are computed."""
+    """``a`` where the condition holds, else ``b``: numbers, truths, tensors or records of them. Both are computed."""
     if isinstance(condition, np.ndarray):
         return Lanes(*np.where(condition, _numbers(a), _numbers(b)))
     return a if condition else b

@@ -11,7 +11,7 @@ from typing import Any
 
 from llvmlite import ir
 from numba.core import cgutils, types
-from numba.core.types.containers import BaseNamedTuple, BaseTuple
+from numba.core.types.containers import BaseTuple
 from numba.extending import intrinsic, overload
 
 import solver.jit.lanes  # tells numba of lanes
@@ -29,8 +29,10 @@ from solver.jit.types import (
     UpToEightType,
     lanes_type,
     mask_type,
+    members_of,
     tensor_of_lanes,
     tensor_type,
+    with_members,
 )
 from solver.lanes import WIDTH
 from solver.tensor import Tensor
@@ -38,25 +40,13 @@ from solver.tensor import Tensor
 I32 = ir.IntType(32)
 
 
-def _members(given: Any) -> tuple[Any, ...]:
-    """The types of what a value consists of, if it is a tuple."""
-    return tuple(given.types) if isinstance(given, BaseTuple) else ()
-
-
 def _is_wide(given: Any) -> bool:
     """Whether a value holds numbers of eight particles."""
     if isinstance(given, TensorType):
         return given.number is lanes_type
     return isinstance(given, LanesType | MaskType | EightType | UpToEightType) or any(
-        map(_is_wide, _members(given))
+        map(_is_wide, members_of(given))
     )
-
-
-def _like(given: BaseTuple, members: list[Any]) -> Any:
-    """The type of a tuple of the same kind with other members."""
-    if isinstance(given, BaseNamedTuple):
-        return BaseTuple.from_types(members, given.instance_class)
-    return BaseTuple.from_types(members)
 
 
 def _of_one(given: Any) -> Any:
@@ -71,7 +61,7 @@ def _of_one(given: Any) -> Any:
         return types.intp
     if isinstance(given, TensorType):
         return tensor_type
-    return _like(given, [_of_one(member) for member in _members(given)])
+    return with_members(given, [_of_one(member) for member in members_of(given)])
 
 
 def _of_eight(given: Any) -> Any:
@@ -83,7 +73,7 @@ def _of_eight(given: Any) -> Any:
     if isinstance(given, TensorType):
         return tensor_of_lanes
     if isinstance(given, BaseTuple):
-        return _like(given, [_of_eight(member) for member in _members(given)])
+        return with_members(given, [_of_eight(member) for member in members_of(given)])
     return given
 
 
@@ -120,7 +110,7 @@ class _Numbers:
             return [self.lay_down(lanes_type, getattr(proxy, name)) for name in Tensor.__slots__]
         if isinstance(given, BaseTuple) and _is_wide(given):
             parts = cgutils.unpack_tuple(builder, value)
-            return [self.lay_down(*pair) for pair in zip(_members(given), parts, strict=True)]
+            return [self.lay_down(*pair) for pair in zip(members_of(given), parts, strict=True)]
         return value
 
     def take(self, given: Any, laid: Any, lane: Any) -> Any:
@@ -142,7 +132,7 @@ class _Numbers:
                 setattr(proxy, name, self.take(lanes_type, room, lane))
             return proxy._getvalue()
         if isinstance(given, BaseTuple) and _is_wide(given):
-            parts = [self.take(t, part, lane) for t, part in zip(_members(given), laid, strict=True)]
+            parts = [self.take(t, part, lane) for t, part in zip(members_of(given), laid, strict=True)]
             return context.make_tuple(builder, _of_one(given), parts)
         return laid
 
@@ -154,7 +144,7 @@ class _Numbers:
             return self.room(VECTOR)
         if isinstance(answer, TensorType):
             return [self.room(VECTOR) for _ in Tensor.__slots__]
-        return [self.rooms_for(member) for member in _members(answer)]
+        return [self.rooms_for(member) for member in members_of(answer)]
 
     def put(self, answer: Any, rooms: Any, lane: Any, value: Any) -> None:
         """Store the answer of one particle."""
@@ -170,7 +160,7 @@ class _Numbers:
                 self.put(types.float64, room, lane, getattr(proxy, name))
         elif isinstance(answer, BaseTuple):
             parts = cgutils.unpack_tuple(builder, value)
-            for member, room, part in zip(_members(answer), rooms, parts, strict=True):
+            for member, room, part in zip(members_of(answer), rooms, parts, strict=True):
                 self.put(member, room, lane, part)
 
     def gather(self, answer: Any, rooms: Any) -> Any:
@@ -188,7 +178,7 @@ class _Numbers:
                 setattr(proxy, name, self.gather(types.float64, room))
             return proxy._getvalue()
         if isinstance(answer, BaseTuple):
-            parts = [self.gather(*pair) for pair in zip(_members(answer), rooms, strict=True)]
+            parts = [self.gather(*pair) for pair in zip(members_of(answer), rooms, strict=True)]
             return context.make_tuple(builder, _of_eight(answer), parts)
         return context.get_dummy_value()
 
@@ -199,7 +189,7 @@ def _one_after_the_other(function: Callable[..., Any]) -> Callable[..., Any]:
     @intrinsic
     def ask(typing_context: Any, given: Any) -> Any:
         asked = typing_context.resolve_value_type(function)
-        one = typing_context.resolve_function_type(asked, tuple(map(_of_one, _members(given))), {})
+        one = typing_context.resolve_function_type(asked, tuple(map(_of_one, members_of(given))), {})
         answer = one.return_type
 
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -211,7 +201,7 @@ def _one_after_the_other(function: Callable[..., Any]) -> Callable[..., Any]:
             with cgutils.for_range(builder, I32(WIDTH), intp=I32) as loop:
                 particle = [
                     context.cast(builder, numbers.take(t, part, loop.index), _of_one(t), wanted)
-                    for t, part, wanted in zip(_members(given), laid, one.args, strict=True)
+                    for t, part, wanted in zip(members_of(given), laid, one.args, strict=True)
                 ]
                 numbers.put(answer, rooms, loop.index, call(builder, particle))
             return numbers.gather(answer, rooms)

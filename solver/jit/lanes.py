@@ -26,7 +26,10 @@ from solver.jit.types import (
     eight_type,
     lanes_type,
     mask_type,
+    members_of,
+    tensor_of_lanes,
     up_to_eight_type,
+    with_members,
 )
 from solver.lanes import WIDTH, Eight, Lanes, UpToEight
 
@@ -141,26 +144,61 @@ def _of_one_truth(condition: Any) -> Any:
     return (lambda condition: condition) if isinstance(condition, types.Boolean) else None
 
 
-def _select_tensor(condition: Any, a: Any, b: Any) -> Any:
-    where = lanes.where
-    return tensor.Tensor(
-        where(condition, a.xx, b.xx),
-        where(condition, a.xy, b.xy),
-        where(condition, a.xz, b.xz),
-        where(condition, a.yx, b.yx),
-        where(condition, a.yy, b.yy),
-        where(condition, a.yz, b.yz),
-        where(condition, a.zx, b.zx),
-        where(condition, a.zy, b.zy),
-        where(condition, a.zz, b.zz),
-    )
+def _choice(a: Any, b: Any) -> Any:
+    """The type of what is chosen of two, lane by lane."""
+    if isinstance(a, BaseTuple):
+        return with_members(a, list(map(_choice, members_of(a), members_of(b))))
+    if isinstance(a, TensorType):
+        return tensor_of_lanes
+    return mask_type if all(isinstance(t, MaskType | types.Boolean) for t in (a, b)) else lanes_type
+
+
+def _parts(context: Any, builder: Any, given: Any, value: Any) -> list[tuple[Any, Any]]:
+    """What a record or tensor consists of, each with its type."""
+    if isinstance(given, BaseTuple):
+        return list(zip(members_of(given), cgutils.unpack_tuple(builder, value), strict=True))
+    proxy = cgutils.create_struct_proxy(given)(context, builder, value=value)
+    return [(given.number, getattr(proxy, name)) for name in tensor.Tensor.__slots__]
+
+
+def _put_together(context: Any, builder: Any, wanted: Any, values: list[Any]) -> Any:
+    """A record or tensor of its parts."""
+    if isinstance(wanted, BaseTuple):
+        return context.make_tuple(builder, wanted, values)
+    proxy = cgutils.create_struct_proxy(wanted)(context, builder)
+    for name, value in zip(tensor.Tensor.__slots__, values, strict=True):
+        setattr(proxy, name, value)
+    return proxy._getvalue()
+
+
+def _chosen(context: Any, builder: Any, mask: Any, a: tuple[Any, Any], b: tuple[Any, Any]) -> Any:
+    """The choice of two values, each given with its type."""
+    answer = _choice(a[0], b[0])
+    if isinstance(answer, BaseTuple | TensorType):
+        parts = zip(_parts(context, builder, *a), _parts(context, builder, *b), strict=True)
+        return _put_together(
+            context, builder, answer, [_chosen(context, builder, mask, *pair) for pair in parts]
+        )
+    wide = [context.cast(builder, value, given, answer) for given, value in (a, b)]
+    return builder.select(mask, *wide)
+
+
+@intrinsic
+def _select(context: Any, mask: Any, a: Any, b: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        _, given_a, given_b = signature.args
+        return _chosen(context, builder, args[0], (given_a, args[1]), (given_b, args[2]))
+
+    return _choice(a, b)(mask_type, a, b), generate
 
 
 @overload(lanes.where, jit_options=INLINED, strict=False)
 def _where(condition: Any, a: Any, b: Any) -> Any:
     if not isinstance(condition, MaskType):
         return lambda condition, a, b: a if condition else b
-    return _select_tensor if isinstance(a, TensorType) else None
+    if isinstance(a, LanesType | MaskType) or isinstance(b, LanesType | MaskType):
+        return None  # instructions, see above
+    return lambda condition, a, b: _select(condition, a, b)
 
 
 @intrinsic

@@ -7,6 +7,7 @@ from typing import Any
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.typeconv import Conversion
+from numba.core.types.containers import BaseNamedTuple, BaseTuple
 from numba.extending import lower_cast, models, register_model
 
 from solver.jit.compile import OPTIONS
@@ -84,6 +85,18 @@ eight_type = EightType()
 up_to_eight_type = UpToEightType()
 tensor_type = TensorType(types.float64)
 tensor_of_lanes = TensorType(lanes_type)
+
+
+def members_of(given: Any) -> tuple[Any, ...]:
+    """The types of what a value consists of, if it is a tuple."""
+    return tuple(given.types) if isinstance(given, BaseTuple) else ()
+
+
+def with_members(given: BaseTuple, members: list[Any]) -> Any:
+    """The type of a tuple of the same kind with other members."""
+    if isinstance(given, BaseNamedTuple):
+        return BaseTuple.from_types(members, given.instance_class)
+    return BaseTuple.from_types(members)
 
 
 @register_model(LanesType)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -28,6 +29,7 @@ from solver.lanes import (
     sum_of,
     where,
 )
+from solver.tensor import Tensor, isotropic, tensor_at
 
 A = np.array([0.5, -1.25, 2.0, 3.75, -0.0, 1e30, 7.0, -7.5])
 B = np.array([2.0, 4.0, -8.0, 0.25, 1.0, 1e-30, 7.0, 3.0])
@@ -127,6 +129,49 @@ def test_comparisons_choose_number_by_number(run):
     ]
     np.testing.assert_array_equal(results[:10], expected)
     np.testing.assert_array_equal(results[10], [B.sum(), 7.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+
+
+class Inner(NamedTuple):
+    number: float
+    holds: bool
+
+
+class Outer(NamedTuple):
+    tensor: Tensor
+    inner: Inner
+
+
+@kernel
+def choose_records(rows, tensors, results):
+    """Of records in lanes, and of one in lanes and one of numbers."""
+    p = Eight(0)
+    a, b = lanes_at(rows, 0, 0), lanes_at(rows, 1, 0)
+    t = tensor_at(tensors, p)
+    wide = Outer(t, Inner(a, a > 0.0))
+    chosen = where(a < b, wide, Outer(t * 2.0, Inner(b, b > 3.0)))
+    results[p, 0] = chosen.tensor.yz
+    results[p, 1] = chosen.inner.number
+    results[p, 2] = where(chosen.inner.holds, 1.0, 0.0)
+    chosen = where(a < b, wide, Outer(isotropic(5.0), Inner(7.0, True)))
+    results[p, 3] = chosen.tensor.yy
+    results[p, 4] = chosen.inner.number
+    results[p, 5] = where(chosen.inner.holds, 1.0, 0.0)
+
+
+def test_records_are_chosen_part_by_part():
+    tensors = np.random.default_rng(9).normal(size=(8, 3, 3))
+    results = np.zeros((8, 6))
+    choose_records(np.array([A, B]), tensors, results)
+    less = A < B
+    expected = [
+        np.where(less, 1.0, 2.0) * tensors[:, 1, 2],
+        np.where(less, A, B),
+        np.where(less, A > 0.0, B > 3.0),
+        np.where(less, tensors[:, 1, 1], 5.0),
+        np.where(less, A, 7.0),
+        np.where(less, A > 0.0, True),
+    ]
+    np.testing.assert_array_equal(results, np.transpose(expected))
 
 
 @kernel
