@@ -6,7 +6,8 @@ import math
 from typing import NamedTuple
 
 from solver.dispatch import inline
-from solver.tensor import Tensor, double_dot, isotropic
+from solver.lanes import anywhere, like, where
+from solver.tensor import Tensor, double_dot, from_symmetric, isotropic
 
 
 class Spectrum(NamedTuple):
@@ -18,43 +19,65 @@ class Spectrum(NamedTuple):
     axes: Tensor
 
 
+class Turned(NamedTuple):
+    """A symmetric tensor in a frame, and the axes of that frame as the columns of a rotation."""
+
+    tensor: Tensor
+    axes: Tensor
+
+
 @inline
-def plane_angle(off_diagonal: float, first: float, second: float) -> float:
-    """The angle that turns two axes to principal ones, the larger value on the first."""
-    return 0.5 * math.atan2(2.0 * off_diagonal, first - second)
+def turn_in_plane(a: Tensor, axes: Tensor, turns: bool) -> Turned:
+    """Turn the first two axes of the frame until they are principal ones of their plane, where it ``turns``.
+
+    By Jacobi's rotation, at most 45 degrees (Golub and Van Loan, Matrix Computations). Then the axes change their
+    names, the first to the last, so that the next plane takes its turn.
+    """
+    xy, difference = where(turns, a.xy, 0.0), a.xx - a.yy
+    size = abs(difference) + math.sqrt(difference * difference + 4.0 * xy * xy)
+    tangent = 2.0 * where(difference < 0.0, -xy, xy) / where(size > 0.0, size, 1.0)
+    c = 1.0 / math.sqrt(1.0 + tangent * tangent)
+    s = tangent * c
+    normal = a.yy - tangent * xy, a.zz, a.xx + tangent * xy
+    turned = from_symmetric(*normal, c * a.yz - s * a.xz, where(turns, 0.0, a.xy), c * a.xz + s * a.yz)
+    q = axes
+    turned_axes = Tensor(
+        c * q.xy - s * q.xx,
+        q.xz,
+        c * q.xx + s * q.xy,
+        c * q.yy - s * q.yx,
+        q.yz,
+        c * q.yx + s * q.yy,
+        c * q.zy - s * q.zx,
+        q.zz,
+        c * q.zx + s * q.zy,
+    )
+    return Turned(turned, turned_axes)
 
 
 @inline
 def spectrum(a: Tensor) -> Spectrum:
     """Spectral decomposition of a symmetric tensor by Jacobi's rotations.
 
-    Accurate to rounding for repeated values too. Each sweep turns the xy, xz and yz planes; convergence is
-    quadratic, so 12 sweeps are more than ever needed.
+    Accurate to rounding for repeated values too. Each sweep turns the three planes; convergence is quadratic, so
+    12 sweeps are more than ever needed.
     """
-    axes = isotropic(1.0)
+    turned = Turned(a, isotropic(like(1.0, a.xx)))
     smallest = 1.0e-34 * double_dot(a, a)
     for _ in range(12):
-        if a.xy * a.xy + a.xz * a.xz + a.yz * a.yz <= smallest:
+        a = turned.tensor
+        turns = a.xy * a.xy + a.xz * a.xz + a.yz * a.yz > smallest
+        if not anywhere(turns):
             break
-        angle = plane_angle(a.xy, a.xx, a.yy)
-        c, s = math.cos(angle), math.sin(angle)
-        turn = Tensor(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
-        a, axes = turn.T @ a @ turn, axes @ turn
-        angle = plane_angle(a.xz, a.xx, a.zz)
-        c, s = math.cos(angle), math.sin(angle)
-        turn = Tensor(c, 0.0, -s, 0.0, 1.0, 0.0, s, 0.0, c)
-        a, axes = turn.T @ a @ turn, axes @ turn
-        angle = plane_angle(a.yz, a.yy, a.zz)
-        c, s = math.cos(angle), math.sin(angle)
-        turn = Tensor(1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c)
-        a, axes = turn.T @ a @ turn, axes @ turn
-    x, y, z = a.xx, a.yy, a.zz
-    if x < y:
-        x, y, axes = y, x, exchange_xy(axes)
-    if x < z:
-        x, z, axes = z, x, exchange_xz(axes)
-    if y < z:
-        y, z, axes = z, y, exchange_yz(axes)
+        for _ in range(3):
+            turned = turn_in_plane(turned.tensor, turned.axes, turns)
+    x, y, z, axes = turned.tensor.xx, turned.tensor.yy, turned.tensor.zz, turned.axes
+    falls = x < y
+    x, y, axes = where(falls, y, x), where(falls, x, y), where(falls, exchange_xy(axes), axes)
+    falls = x < z
+    x, z, axes = where(falls, z, x), where(falls, x, z), where(falls, exchange_xz(axes), axes)
+    falls = y < z
+    y, z, axes = where(falls, z, y), where(falls, y, z), where(falls, exchange_yz(axes), axes)
     return Spectrum(x, y, z, axes)
 
 
