@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -21,7 +22,16 @@ from solver.materials.constitutive import (
 )
 from solver.particles import Array, Particles, StateVariable
 from solver.spectral import compose, spectrum
-from solver.tensor import Tensor, determinant, double_dot, isotropic, rotation, symmetric, trace
+from solver.tensor import (
+    Tensor,
+    determinant,
+    double_dot,
+    isotropic,
+    principal_values,
+    rotation,
+    symmetric,
+    trace,
+)
 
 YIELD_TOLERANCE = 1.0e-10
 """Overstress, over the size of the stresses, that counts as elastic."""
@@ -212,21 +222,23 @@ def suction_after(model: MohrCoulomb, state: Any, p: int, volume_strain: float) 
 def soil_of(model: MohrCoulomb, state: Any, p: int, volume_strain: float) -> Soil:
     """Cohesion and moduli by the options that are on, in Uintah's order."""
     strain, rate = state.shear_strain[p], state.shear_strain_rate[p]
-    if model.Use_regular > 0.0 and strain > state.cohesion[p] / state.shear_modulus[p]:
-        strain *= model.tFE / model.tShear
-        rate *= model.tFE / model.tShear
+    if model.Use_regular > 0.0:
+        share = where(strain > state.cohesion[p] / state.shear_modulus[p], model.tFE / model.tShear, 1.0)
+        strain *= share
+        rate *= share
     G, K, c = model.G, model.K, model.c
     if model.Usetransition > 0.0:
         c = model.St * model.A1 * model.W**-model.B1
-        if rate > model.strain_ref:
-            c *= (rate / model.strain_ref) ** model.beta_rate
+        c = c * where(rate > model.strain_ref, rate / model.strain_ref, 1.0) ** model.beta_rate
     if model.Use_linear > 0.0:
         c += model.a * (state.height[p] - model.y_ref)
     if model.Usemodul > 0.0:
         G = model.m_modul * c / 2.0 / (1.0 + model.nuy)
         K = model.m_modul * c / 3.0 / (1.0 - 2.0 * model.nuy)
-    if model.Use_softening > 0.0 and strain > c / G:
-        c *= 1.0 / model.St + (1.0 - 1.0 / model.St) * SOFTENING_BASE ** (-3.0 * strain / model.strain_95)
+    if model.Use_softening > 0.0:
+        remoulded = 1.0 / model.St
+        left = remoulded + (1.0 - remoulded) * SOFTENING_BASE ** (-3.0 * strain / model.strain_95)
+        c = c * where(strain > c / G, left, 1.0)
     if model.UseWaterRetention == 1.0:
         state.suction[p] = suction_after(model, state, p, volume_strain)
         c += math.tan(math.radians(model.PhiB)) * state.suction[p]
@@ -279,33 +291,38 @@ def return_to_surface(soil: Soil, sin_phi: float, sin_psi: float, s: Triple) -> 
     extended = return_direction(soil, Triple(k, -1.0, 0.0), Triple(m, -1.0, 0.0))
     first_edge, second_edge = Triple(1.0, 1.0, k), Triple(1.0, k, k)
     normal = cross(face, compressed)
-    along_first = dot(normal, above) / dot(normal, first_edge)
+    first = dot(normal, above) / dot(normal, first_edge)
     normal = cross(face, extended)
-    along_second = dot(normal, above) / dot(normal, second_edge)
-    if along_first > 0.0 and along_second > 0.0:
-        return Triple(peak, peak, peak)
-    if dot(cross(face, first_edge), above) < 0.0:
-        return Triple(peak + along_first, peak + along_first, peak + along_first * k)
-    if dot(cross(face, second_edge), above) <= 0.0:
-        excess = k * s.x - s.z - 2.0 * soil.cohesion * math.sqrt(k)
-        return Triple(s.x - excess * face.x, s.y - excess * face.y, s.z - excess * face.z)
-    return Triple(peak + along_second, peak + along_second * k, peak + along_second * k)
+    second = dot(normal, above) / dot(normal, second_edge)
+    excess = k * s.x - s.z - 2.0 * soil.cohesion * math.sqrt(k)
+    on_face = Triple(s.x - excess * face.x, s.y - excess * face.y, s.z - excess * face.z)
+    on_first_edge = Triple(peak + first, peak + first, peak + first * k)
+    on_second_edge = Triple(peak + second, peak + second * k, peak + second * k)
+    beyond_second = dot(cross(face, second_edge), above) > 0.0
+    beyond_first = dot(cross(face, first_edge), above) < 0.0
+    beyond_both = (first > 0.0) & (second > 0.0)
+    returned = where(beyond_second, on_second_edge, on_face)
+    returned = where(beyond_first, on_first_edge, returned)
+    return where(beyond_both, Triple(peak, peak, peak), returned)
 
 
 @inline
 def plastic_stress(model: MohrCoulomb, soil: Soil, trial: Tensor) -> Tensor:
     """The trial stress, returned to the surface if it lies outside."""
     sin_phi, cos_phi = math.sin(math.radians(model.Phi)), math.cos(math.radians(model.Phi))
-    s = spectrum(trial)
-    overstress = (s.first - s.third) + (s.first + s.third) * sin_phi - 2.0 * soil.cohesion * cos_phi
-    if overstress <= YIELD_TOLERANCE * (abs(s.first) + abs(s.third) + 2.0 * soil.cohesion):
+    largest, _, least = principal_values(trial)
+    overstress = (largest - least) + (largest + least) * sin_phi - 2.0 * soil.cohesion * cos_phi
+    outside = overstress > YIELD_TOLERANCE * (abs(largest) + abs(least) + 2.0 * soil.cohesion)
+    if not anywhere(outside):
         return trial
     sin_psi = math.sin(math.radians(model.Psi))
+    s = spectrum(trial)
     returned = return_to_surface(soil, sin_phi, sin_psi, Triple(s.first, s.second, s.third))
-    return compose(returned.x, returned.y, returned.z, s.axes)
+    return where(outside, compose(returned.x, returned.y, returned.z, s.axes), trial)
 
 
 @implements(stress_update, MohrCoulomb)
+@lanewise
 def mohr_coulomb_stress(
     model: MohrCoulomb, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
