@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, like, where
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -123,15 +124,19 @@ def crush_curve(model: SoilFoam, strain: float) -> TablePoint:
         model.p8,
         model.p9,
     )
-    segment = 0
+    slope = like((pressures[1] - pressures[0]) / (strains[1] - strains[0]), strain)
+    pressure = pressures[0] + slope * (strain - strains[0])
     for i in range(1, 9):
-        if strains[i + 1] < strains[i] and strain < strains[i]:
-            segment = i
-    slope = (pressures[segment + 1] - pressures[segment]) / (strains[segment + 1] - strains[segment])
-    return TablePoint(pressures[segment] + slope * (strain - strains[segment]), slope)
+        if strains[i + 1] < strains[i]:
+            beyond = strain < strains[i]
+            steepness = (pressures[i + 1] - pressures[i]) / (strains[i + 1] - strains[i])
+            slope = where(beyond, steepness, slope)
+            pressure = where(beyond, pressures[i] + steepness * (strain - strains[i]), pressure)
+    return TablePoint(pressure, slope)
 
 
 @implements(stress_update, SoilFoam)
+@lanewise
 def soil_foam_stress(
     model: SoilFoam, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -139,21 +144,21 @@ def soil_foam_stress(
     G, K = model.elastic_shear, model.bulk
     d = symmetric(point.velocity_gradient)
     strain = math.log(point.volume * material.density / point.mass)
-    if strain > state.least_strain[p]:
-        pressure = state.pressure_there[p] - K * (strain - state.least_strain[p])
-        stiffness = K
-    else:
+    least, pressure_there = state.least_strain[p], state.pressure_there[p]
+    pressure = pressure_there - K * (strain - least)
+    stiffness = like(K, strain)
+    crushes = strain <= least
+    if anywhere(crushes):
         crushed = crush_curve(model, strain)
-        pressure = crushed.pressure
-        stiffness = -crushed.slope
-        state.least_strain[p] = strain
-        state.pressure_there[p] = pressure
+        pressure = where(crushes, crushed.pressure, pressure)
+        stiffness = where(crushes, -crushed.slope, stiffness)
+        state.least_strain[p] = where(crushes, strain, least)
+        state.pressure_there[p] = where(crushes, pressure, pressure_there)
     pressure = max(pressure, model.pc)
     s = deviator(point.stress) + (2.0 * G * step.dt) * deviator(d)
     second_invariant = 0.5 * double_dot(s, s)
     limit = max(model.a0 + (model.a1 + model.a2 * pressure) * pressure, 0.0)
-    if second_invariant >= limit:
-        s = s * math.sqrt(limit / (second_invariant + 1.0e-10))
+    s = s * where(second_invariant >= limit, math.sqrt(limit / (second_invariant + 1.0e-10)), 1.0)
     stress = s - isotropic(pressure)
     density = material.density / determinant(point.deformation_gradient_old)
     return StressUpdate(
