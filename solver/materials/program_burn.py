@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, Vector, model
-from solver.dispatch import implements
+from solver.dispatch import implements, lanewise
+from solver.lanes import anywhere, where
 from solver.materials.constitutive import (
     DELETE,
     Material,
@@ -87,30 +88,30 @@ def _(model: ProgramBurn, state: Any, particles: Particles, material: Material, 
 
 
 @implements(stress_update, ProgramBurn)
+@lanewise
 def program_burn_stress(
     model: ProgramBurn, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
     """Pressure of the mixture; sound speed of the explosive, or of the products once it burns."""
     J = determinant(point.deformation_gradient)
-    localized = point.localized
-    if not J > 0.0:
-        localized = DELETE
-        J = 1.0
+    possible = J > 0.0
+    localized = where(possible, point.localized, DELETE)
+    J = where(possible, J, 1.0)
     duration = BURN_WIDTH * (point.mass / model.rho0) ** (1.0 / 3.0) / model.D
     f = max(step.time - state.arrival[p], 0.0) / duration
-    if f > COMPLETE:
-        f = 1.0
+    f = where(f > COMPLETE, 1.0, f)
     state.burned[p] = f
     density = model.rho0 / J
     pressure = (J**-model.n - 1.0) / (model.n * model.K)
     slope = (density / model.rho0) ** (model.n - 1.0) / (model.K * model.rho0)
-    if f > 0.0:
+    burns = f > 0.0
+    if anywhere(burns):
         first = model.A * math.exp(-model.R1 * J)
         second = model.B * math.exp(-model.R2 * J)
         third = model.C * J ** -(1.0 + model.om)
-        pressure = pressure * (1.0 - f) + (first + second + third) * f
-        slope = (model.R1 * first + model.R2 * second) * model.rho0 / (density * density)
-        slope += (1.0 + model.om) * third / density
+        pressure = where(burns, pressure * (1.0 - f) + (first + second + third) * f, pressure)
+        products = (model.R1 * first + model.R2 * second) * model.rho0 / (density * density)
+        slope = where(burns, products + (1.0 + model.om) * third / density, slope)
     return StressUpdate(
         stress=isotropic(-pressure),
         sound_speed=math.sqrt(slope),
