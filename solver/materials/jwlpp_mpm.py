@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, negation, where
 from solver.materials.constitutive import (
     DELETE,
     Material,
@@ -132,13 +133,14 @@ def explicit_burn(model: JWLppMPM, old: Burn, p_u: float, p_b: float, dt: float)
 
 
 @inline
-def implicit_burn(model: JWLppMPM, old: Burn, p_u: float, p_b: float, dt: float) -> Burn:
-    """Backward Euler for fraction and pressure together, by at least one iteration.
+def implicit_burn(model: JWLppMPM, burns: bool, old: Burn, p_u: float, p_b: float, dt: float) -> Burn:
+    """Backward Euler for fraction and pressure together where it burns, by at least one iteration.
 
     The iteration is Uintah's, whose sign of the rate's derivative by pressure is opposite to Newton's; it
     converges to the same solution, though only linearly.
     """
     f, p = old.fraction, old.pressure
+    goes_on = burns
     for _ in range(model.max_number_of_Newton_iterations):
         growth = model.reaction_G * p**model.reaction_b * dt
         fraction_residual = f - old.fraction - (1.0 - f) * growth
@@ -146,13 +148,14 @@ def implicit_burn(model: JWLppMPM, old: Burn, p_u: float, p_b: float, dt: float)
         by_fraction = 1.0 + growth
         by_pressure = model.reaction_b * (1.0 - f) * growth / p
         scale = 1.0 / (by_fraction - by_pressure * (p_u - p_b))
-        f, p = (
-            f - scale * (fraction_residual - by_pressure * pressure_residual),
-            p - scale * (by_fraction * pressure_residual - (p_u - p_b) * fraction_residual),
-        )
+        df = scale * (fraction_residual - by_pressure * pressure_residual)
+        dp = scale * (by_fraction * pressure_residual - (p_u - p_b) * fraction_residual)
+        f, p = where(goes_on, f - df, f), where(goes_on, p - dp, p)
         fraction_residual = f - old.fraction - (1.0 - f) * model.reaction_G * p**model.reaction_b * dt
         pressure_residual = p - (1.0 - f) * p_u - f * p_b
-        if math.hypot(fraction_residual, pressure_residual) <= model.tolerance_for_Newton_iterations:
+        residual = math.sqrt(fraction_residual * fraction_residual + pressure_residual * pressure_residual)
+        goes_on = goes_on & negation(residual <= model.tolerance_for_Newton_iterations)
+        if not anywhere(goes_on):
             break
     return Burn(f, p)
 
@@ -162,8 +165,10 @@ def burn(model: JWLppMPM, old: Burn, J_old: float, J: float, dt: float) -> Burn:
     """Fraction and pressure at the end of the step."""
     p_u, p_b = explosive_pressure(model, J), products_pressure(model, J)
     limit = model.max_burned_fraction
-    if old.pressure <= model.ignition_pressure or old.fraction >= limit:
-        return Burn(old.fraction, p_u * (1.0 - old.fraction) + p_b * old.fraction)
+    unlit = Burn(old.fraction, p_u * (1.0 - old.fraction) + p_b * old.fraction)
+    burns = (old.pressure > model.ignition_pressure) & (old.fraction < limit)
+    if not anywhere(burns):
+        return unlit
     cycles = max(1, math.ceil(dt / model.max_burn_timestep_size))
     compression = (J / J_old) ** (1.0 / cycles)
     new = old
@@ -174,13 +179,13 @@ def burn(model: JWLppMPM, old: Burn, J_old: float, J: float, dt: float) -> Burn:
         if model.doFastStressCompute:
             new = explicit_burn(model, new, p_u_cycle, p_b_cycle, dt / cycles)
         else:
-            new = implicit_burn(model, new, p_u_cycle, p_b_cycle, dt / cycles)
-    if new.fraction > limit:
-        new = Burn(limit, p_u * (1.0 - limit) + p_b * limit)
-    return new
+            new = implicit_burn(model, burns, new, p_u_cycle, p_b_cycle, dt / cycles)
+    new = where(new.fraction > limit, Burn(limit, p_u * (1.0 - limit) + p_b * limit), new)
+    return where(burns, new, unlit)
 
 
 @implements(stress_update, JWLppMPM)
+@lanewise
 def jwlpp_stress(
     model: JWLppMPM, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -188,26 +193,23 @@ def jwlpp_stress(
 
     Failed particles keep their stress, inverted ones are taken out.
     """
-    stress, localized = point.stress, point.localized
-    sound_speed, viscous_pressure = NO_WAVES, 0.0
     J = determinant(point.deformation_gradient)
-    if localized == 0 and J > 0.0:
-        density = material.density / J
-        old = Burn(state.burned[p], -trace(stress) / 3.0)
-        new = burn(model, old, determinant(point.deformation_gradient_old), J, step.dt)
-        state.burned[p] = new.fraction
-        state.burned_in_step[p] = new.fraction - old.fraction
-        stress = isotropic(-new.pressure)
-        sound_speed = math.sqrt(J ** (1.0 - model.murnaghan_n) / (model.murnaghan_K * material.density))
-        bulk_speed = math.sqrt(1.0 / (model.murnaghan_K * density))
-        viscous_pressure = artificial_viscosity(step, trace(point.velocity_gradient), bulk_speed, density)
-    elif localized == 0:
-        stress, localized = isotropic(0.0), DELETE
+    sound, possible = point.localized == 0, J > 0.0
+    bears = sound & possible
+    J = where(possible, J, 1.0)
+    density = material.density / J
+    old = Burn(state.burned[p], -trace(point.stress) / 3.0)
+    new = burn(model, old, determinant(point.deformation_gradient_old), J, step.dt)
+    state.burned_in_step[p] = where(bears, new.fraction - old.fraction, state.burned_in_step[p])
+    state.burned[p] = where(bears, new.fraction, old.fraction)
+    sound_speed = math.sqrt(J ** (1.0 - model.murnaghan_n) / (model.murnaghan_K * material.density))
+    bulk_speed = math.sqrt(1.0 / (model.murnaghan_K * density))
+    viscous_pressure = artificial_viscosity(step, trace(point.velocity_gradient), bulk_speed, density)
     return StressUpdate(
-        stress=stress,
-        sound_speed=sound_speed,
+        stress=where(sound, isotropic(where(possible, -new.pressure, 0.0)), point.stress),
+        sound_speed=where(bears, sound_speed, NO_WAVES),
         strain_energy=0.0,
         heating_rate=0.0,
-        artificial_pressure=viscous_pressure,
-        localized=localized,
+        artificial_pressure=where(bears, viscous_pressure, 0.0),
+        localized=where(sound & negation(possible), DELETE, point.localized),
     )
