@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, like, negation, where
 from solver.materials.constitutive import (
     DELETE,
     Material,
@@ -35,6 +36,7 @@ from solver.tensor import (
 )
 
 MOST_ITERATIONS = 60
+MOST_HALVINGS = 19
 TOLERANCE = 1.0e-13
 """Sum of the residuals: strains, and the yield function over the square of the preconsolidation."""
 
@@ -225,10 +227,11 @@ def residual(
 def return_to_ellipse(model: CamClay, trial_volume: float, trial_shear: float, start: float) -> Return:
     """Newton's iteration with halved steps where the residual grows; ``start`` is pc before the step."""
     growth, M2 = model.internal_variable_model, model.plastic_yield_condition.M**2
-    x, y, z = trial_volume, trial_shear, 0.0
+    x, y, z = trial_volume, trial_shear, like(0.0, trial_volume)
     r = residual(model, trial_volume, trial_shear, start, x, y, z)
     for _ in range(MOST_ITERATIONS):
-        if r.size < TOLERANCE:
+        goes_on = r.size >= TOLERANCE
+        if not anywhere(goes_on):
             break
         at, pc = r.at, r.preconsolidation
         pc_slope = pc / (growth.lambdatilde - growth.kappatilde)
@@ -245,15 +248,18 @@ def return_to_ellipse(model: CamClay, trial_volume: float, trial_shear: float, s
         rest_s = (vv * r.shear - sv * r.volume) / area
         dz = (r.yielding - fv * rest_v - fs * rest_s) / (fv * along_v + fs * along_s)
         dx, dy = -rest_v - along_v * dz, -rest_s - along_s * dz
-        part = 1.0
-        for _ in range(20):
-            better = residual(
-                model, trial_volume, trial_shear, start, x + part * dx, max(y + part * dy, 0.0), z + part * dz
-            )
-            if better.size < r.size:
+        to_x, to_y, to_z = x + dx, max(y + dy, 0.0), z + dz
+        better = residual(model, trial_volume, trial_shear, start, to_x, to_y, to_z)
+        part = like(1.0, x)
+        for _ in range(MOST_HALVINGS):
+            worse = goes_on & negation(better.size < r.size)
+            if not anywhere(worse):
                 break
-            part *= 0.5
-        x, y, z, r = x + part * dx, max(y + part * dy, 0.0), z + part * dz, better
+            part = where(worse, 0.5 * part, part)
+            to_x, to_y, to_z = x + part * dx, max(y + part * dy, 0.0), z + part * dz
+            better = residual(model, trial_volume, trial_shear, start, to_x, to_y, to_z)
+        x, y, z = where(goes_on, to_x, x), where(goes_on, to_y, y), where(goes_on, to_z, z)
+        r = where(goes_on, better, r)
     return Return(x, y, z / start, r.preconsolidation)
 
 
@@ -268,23 +274,27 @@ def carried_strain(strain: Tensor, F_old: Tensor, F: Tensor) -> Tensor:
 
 
 @implements(stress_update, CamClay)
+@lanewise
 def cam_clay_stress(
     model: CamClay, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
     """Elastic strain carried along, then returned to the ellipse; the energy is what is stored."""
-    F, localized = point.deformation_gradient, point.localized
-    if not 0.0 < determinant(F) < math.inf:
-        F, localized = point.deformation_gradient_old, DELETE
+    J = determinant(point.deformation_gradient)
+    possible = (J > 0.0) & (math.inf > J)
+    F = where(possible, point.deformation_gradient, point.deformation_gradient_old)
+    localized = where(possible, point.localized, DELETE)
     J = determinant(F)
     strain = carried_strain(tensor_at(state.elastic_strain, p), point.deformation_gradient_old, F)
     volume, shear = trace(strain), math.sqrt(2.0 / 3.0) * norm(deviator(strain))
-    direction = deviator(strain) * (1.0 / shear) if shear > 0.0 else isotropic(0.0)
+    direction = deviator(strain) / where(shear > 0.0, shear, 1.0)
     pc = state.preconsolidation[p]
-    if yield_value(model, elastic_stress(model, volume, shear), pc) > TOLERANCE:
+    yields = yield_value(model, elastic_stress(model, volume, shear), pc) > TOLERANCE
+    if anywhere(yields):
         new = return_to_ellipse(model, volume, shear, pc)
-        volume, shear, pc = new.volume, new.shear, new.preconsolidation
-        state.multiplier[p] += new.multiplier
-        strain = direction * shear + isotropic(volume / 3.0)
+        volume, shear = where(yields, new.volume, volume), where(yields, new.shear, shear)
+        pc = where(yields, new.preconsolidation, pc)
+        state.multiplier[p] += where(yields, new.multiplier, 0.0)
+        strain = where(yields, direction * shear + isotropic(volume / 3.0), strain)
     put_tensor(state.elastic_strain, p, strain)
     state.preconsolidation[p] = pc
     at = elastic_stress(model, volume, shear)
