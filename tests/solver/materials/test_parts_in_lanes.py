@@ -10,19 +10,26 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from test_arruda_boyce import RUBBER as ARRUDA_BOYCE
+from test_cam_clay import clay
 from test_cnh_mms import MODEL as CNH_MMS
 from test_comp_mooney_rivlin import RUBBER as MOONEY_RIVLIN
 from test_damage_and_erosion import COULOMB, STRAIN_LIMIT
 from test_flow_stress import STEEL_JC
 from test_hypo_elastic import MODEL as HYPO_ELASTIC
 from test_ideal_gas import AIR, GAS
+from test_jwlpp_mpm import HE as BURNING_MATERIAL
+from test_jwlpp_mpm import MODEL as BURNING
 from test_kelvin_voigt import MODEL as KELVIN_VOIGT
 from test_maxwell_weichert import MODEL as MAXWELL_WEICHERT
 from test_model_exchange import COPPER, MODELS, TEMPERATURE, G, K
+from test_mohr_coulomb import EARTH, SOIL
 from test_murnaghan_mpm import MODEL as MURNAGHAN
 from test_mw_visco_elastic import MODEL as MW_VISCO_ELASTIC
 from test_p_alpha import MODEL as POROUS
 from test_p_alpha import SAND
+from test_program_burn import HE as LIT_MATERIAL
+from test_program_burn import MODEL as LIT
+from test_soil_foam import FOAM
 from test_svk import RUBBER as SVK
 from test_swelling import PLASTIC, silicon
 from test_th_water import MODEL as TH_WATER
@@ -223,20 +230,57 @@ class Before(NamedTuple):
     volume: Any
 
 
+WET_SOIL = SOIL._replace(
+    Usetransition=1.0,
+    St=2.0,
+    A1=3.0e3,
+    B1=0.5,
+    W=0.4,
+    beta_rate=0.1,
+    strain_ref=300.0,
+    Use_linear=1.0,
+    a=2.0e3,
+    y_ref=-1.0,
+    Usemodul=1.0,
+    m_modul=100.0,
+    nuy=0.3,
+    Use_softening=1.0,
+    strain_95=0.2,
+    Use_regular=1.0,
+    tFE=2.0,
+    tShear=1.0,
+    UseWaterRetention=1.0,
+    WR_Param1=0.5,
+    WR_Param2=2.0,
+    WR_Param3=1.0e-4,
+    PhiB=15.0,
+    suction=2.0e4,
+    SpecVol=1.8,
+)
 MATERIALS: dict[str, tuple[Any, ...]] = {
     "arruda_boyce": (ARRUDA_BOYCE, COPPER),
+    "cam_clay": (clay(), EARTH, 1.0e-2),
     "cnh_mms": (CNH_MMS, COPPER),
     "comp_mooney_rivlin": (MOONEY_RIVLIN, COPPER),
     "gao_elastic": (GaoElastic(K, G, 0.1), COPPER),
     "hypo_elastic": (HYPO_ELASTIC, COPPER),
     "ideal_gas": (GAS, AIR),
+    "jwlpp_mpm": (BURNING._replace(max_burn_timestep_size=1.0e-8), BURNING_MATERIAL),
+    "jwlpp_mpm, explicit": (
+        BURNING._replace(max_burn_timestep_size=1.0e-8, doFastStressCompute=True),
+        BURNING_MATERIAL,
+    ),
     "kelvin_voigt": (KELVIN_VOIGT, COPPER),
     "maxwell_weichert": (MAXWELL_WEICHERT, COPPER),
+    "mohr_coulomb": (SOIL, EARTH, 1.0e-2),
+    "mohr_coulomb, all options": (WET_SOIL, EARTH, 1.0e-2),
     "murnaghan": (MURNAGHAN, COPPER),
     "mw_visco_elastic": (MW_VISCO_ELASTIC, COPPER),
     "p_alpha": (POROUS._replace(shear_modulus=1.0e8, yield_stress=1.0e6), SAND),
+    "program_burn": (LIT, LIT_MATERIAL, 0.3),
     "rf_elastic_plastic": (silicon(PLASTIC), COPPER),
     "rigid": (Rigid(), COPPER),
+    "soil_foam": (FOAM, COPPER),
     "svk": (SVK, COPPER),
     "thermo_water": (TH_WATER, TH_WATER_MATERIAL, 0.02),
     "ucnh_var": (UCNH_VAR._replace(usePlasticity=True), COPPER),
@@ -256,6 +300,7 @@ class Octet:
         self.particles.volume[:], self.particles.mass[:] = 1.0e-9, material.density * 1.0e-9
         self.particles.temperature[:] = self.particles.previous_temperature[:] = TEMPERATURE
         self.particles.color[:] = rng.uniform(0.0, 2.0, WIDTH)
+        self.particles.position[:, 0] = np.linspace(0.0, 0.03, WIDTH)
         self.state: Any = new_arrays(state_record(model), WIDTH)
         if type(model) in initialize.registry:
             initialize(model, self.state, self.particles, material, np.zeros(WIDTH, np.int64))
