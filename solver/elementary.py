@@ -76,8 +76,10 @@ def logarithm(x: Lanes) -> Lanes:
 
 @inline
 def power(a: Lanes, b: Lanes | float) -> Lanes:
-    """a^b for a >= 0; 0^0 is 1, as everywhere."""
-    return where(b == 0.0, 1.0, exponential(b * logarithm(a)))
+    """a^b, for a < 0 where b is whole; 0^0 is 1, as everywhere."""
+    size = exponential(b * logarithm(abs(a)))
+    sign = where(floor(b) == b, where(floor(0.5 * b) == 0.5 * b, 1.0, -1.0), math.nan)
+    return where(b == 0.0, 1.0, where(a < 0.0, sign * size, size))
 
 
 @inline

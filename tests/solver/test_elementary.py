@@ -103,3 +103,23 @@ def test_hyperbolic_and_error_functions():
     in_python = elementary.hyperbolic_sine, elementary.hyperbolic_cosine, elementary.hyperbolic_tangent
     for function, found in zip((*in_python, elementary.error_function), results, strict=False):
         np.testing.assert_allclose(function(Lanes(*x[8:16])).numbers, found[8:16], rtol=LAST_DIGITS)
+
+
+@kernel
+def raise_to(x, exponents, powers, by_lanes):
+    for k in range(exponents.shape[0]):
+        p = Eight(0)
+        powers[k][p] = x[p] ** exponents[k]
+        by_lanes[k][p] = x[p] ** (exponents[k] + 0.0 * x[p])
+
+
+def test_negative_numbers_have_whole_powers():
+    x = np.array([-0.3, -1.0, -2.5, 0.7, 2.5, -1.0e10, -1.0e-10, 3.0])
+    exponents = np.array([4.0, 3.0, 1.0, 0.0, -2.0, -3.0, 0.5, 2.5])
+    powers, by_lanes = np.zeros((2, 8, 8))
+    raise_to(x, exponents, powers, by_lanes)
+    with np.errstate(invalid="ignore"):
+        expected = x ** exponents[:, None]
+    np.testing.assert_allclose(powers, expected, rtol=1.0e-14)
+    np.testing.assert_array_equal(by_lanes, powers)
+    assert np.isnan(powers[6:, :3]).all()
