@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple, TypeAlias
 import numpy as np
 
 from solver.declare import Parameter, Vector, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, like, where
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -194,38 +195,40 @@ class FiberLaw(NamedTuple):
 @inline
 def fiber_law(model: Fibered, stretch: float) -> FiberLaw:
     """Slope and energy by the three ranges of stretch; the energy of crimped fibres by Gauss's rule."""
-    if stretch < 1.0:
-        return FiberLaw(0.0, 0.0, 0.0)
+    taut = stretch >= 1.0
+    if not anywhere(taut):
+        none = like(0.0, stretch)
+        return FiberLaw(none, none, none)
     c3, c4, c5, straight = model.c3, model.c4, model.c5, model.fiber_stretch
     c6 = c3 * (math.exp(c4 * (straight - 1.0)) - 1.0) - c5 * straight
-    crimped_end = min(stretch, straight)
-    half = 0.5 * (crimped_end - 1.0)
-    energy = 0.0
+    crimped, beyond = min(max(stretch, 1.0), straight), max(stretch, straight)
+    half = 0.5 * (crimped - 1.0)
+    energy = c5 * (beyond - straight) + c6 * math.log(beyond / straight)
     for k in range(len(GAUSS_NODES)):
         x = 1.0 + half * (1.0 + GAUSS_NODES[k])
         energy += half * GAUSS_WEIGHTS[k] * c3 * (math.exp(c4 * (x - 1.0)) - 1.0) / x
-    if stretch < straight:
-        rise = math.exp(c4 * (stretch - 1.0))
-        slope = 0.5 * c3 * (rise - 1.0) / stretch**2
-        curvature = 0.25 * c3 * (c4 * rise - (rise - 1.0) / stretch) / stretch**3
-    else:
-        slope = 0.5 * (c5 + c6 / stretch) / stretch
-        curvature = -0.25 * c6 / stretch**4
-        energy += c5 * (stretch - straight) + c6 * math.log(stretch / straight)
+    rise = math.exp(c4 * (crimped - 1.0))
+    straightens = stretch < straight
+    slope = where(straightens, 0.5 * c3 * (rise - 1.0) / crimped**2, 0.5 * (c5 + c6 / beyond) / beyond)
+    curvature = where(
+        straightens,
+        0.25 * c3 * (c4 * rise - (rise - 1.0) / crimped) / crimped**3,
+        -0.25 * c6 / beyond**4,
+    )
     stiffness = stretch**2 * (4.0 * curvature * stretch**2 - 2.0 * slope * stretch)
-    return FiberLaw(slope, stiffness, energy)
+    return FiberLaw(slope, where(taut, stiffness, 0.0), energy)
 
 
 @inline
 def failure_state(model: Fibered, old: float, F: Tensor, stretch: float) -> float:
     """New failure of the matrix (1), the fibres (2) or both (3); what failed once stays failed."""
     if model.failure_option != 1.0:
-        return 0.0
+        return like(0.0, stretch)
     principal = principal_values(F.T @ F)
     shear = 0.5 * (principal.first - principal.third)
-    matrix = shear > model.max_matrix_strain or old in (1.0, 3.0)
-    fibers = stretch > model.max_fiber_strain or old in (2.0, 3.0)
-    return (1.0 if matrix else 0.0) + (2.0 if fibers else 0.0)
+    matrix = (shear > model.max_matrix_strain) | (old == 1.0) | (old == 3.0)
+    fibers = (stretch > model.max_fiber_strain) | (old == 2.0) | (old == 3.0)
+    return where(matrix, 1.0, 0.0) + where(fibers, 2.0, 0.0)
 
 
 class ElasticResponse(NamedTuple):
@@ -259,15 +262,14 @@ def fibered_response(model: Fibered, state: Any, p: int, F: Tensor) -> ElasticRe
     state.stretch[p] = total_stretch
     state.failure[p] = failure
 
-    stress = isotropic(0.0)
-    if failure in (0.0, 2.0):
-        mean_stress = K * math.log(J) / J
-        if abs(mean_stress) > LEAST_PRESSURE:
-            stress = isotropic(mean_stress)
-        matrix = b * (c1 + c2 * I1) - b2 * c2 - isotropic((c1 * I1 + 2.0 * c2 * I2) / 3.0)
-        stress = stress + matrix * (2.0 / J)
-    if failure in (0.0, 1.0):
-        stress = stress + deviator(fiber) * (2.0 * law.slope * stretch**2 / (J * total_stretch**2))
+    mean_stress = K * math.log(J) / J
+    mean_stress = where(abs(mean_stress) > LEAST_PRESSURE, mean_stress, 0.0)
+    matrix = b * (c1 + c2 * I1) - b2 * c2 - isotropic((c1 * I1 + 2.0 * c2 * I2) / 3.0)
+    of_matrix = isotropic(mean_stress) + matrix * (2.0 / J)
+    of_fibers = deviator(fiber) * (2.0 * law.slope * stretch**2 / (J * total_stretch**2))
+    none = isotropic(0.0)
+    stress = where((failure == 0.0) | (failure == 2.0), of_matrix, none)
+    stress = stress + where((failure == 0.0) | (failure == 1.0), of_fibers, none)
     energy = 0.5 * K * math.log(J) ** 2 + c1 * (I1 - 3.0) + c2 * (I2 - 3.0) + law.energy
     return ElasticResponse(stress, 2.0 * c1 + c2 + law.stiffness, energy)
 
@@ -293,6 +295,7 @@ def fibered_update(
 
 
 @implements(stress_update, TransIsoHyper)
+@lanewise
 def trans_iso_hyper_stress(
     model: TransIsoHyper, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -302,6 +305,7 @@ def trans_iso_hyper_stress(
 
 
 @implements(stress_update, ViscoTransIsoHyper)
+@lanewise
 def visco_trans_iso_hyper_stress(
     model: ViscoTransIsoHyper, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
