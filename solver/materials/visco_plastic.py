@@ -8,7 +8,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import Parameter, SubModel, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, like, negation, where
 from solver.materials.constitutive import (
     Material,
     Point,
@@ -163,15 +164,15 @@ def _(model: ViscoPlastic, state: Any, particles: Particles, material: Material,
 def without_noise(a: Tensor, tolerance: float) -> Tensor:
     """A tensor whose components below a tolerance are zero."""
     return Tensor(
-        a.xx if abs(a.xx) >= tolerance else 0.0,
-        a.xy if abs(a.xy) >= tolerance else 0.0,
-        a.xz if abs(a.xz) >= tolerance else 0.0,
-        a.yx if abs(a.yx) >= tolerance else 0.0,
-        a.yy if abs(a.yy) >= tolerance else 0.0,
-        a.yz if abs(a.yz) >= tolerance else 0.0,
-        a.zx if abs(a.zx) >= tolerance else 0.0,
-        a.zy if abs(a.zy) >= tolerance else 0.0,
-        a.zz if abs(a.zz) >= tolerance else 0.0,
+        where(abs(a.xx) >= tolerance, a.xx, 0.0),
+        where(abs(a.xy) >= tolerance, a.xy, 0.0),
+        where(abs(a.xz) >= tolerance, a.xz, 0.0),
+        where(abs(a.yx) >= tolerance, a.yx, 0.0),
+        where(abs(a.yy) >= tolerance, a.yy, 0.0),
+        where(abs(a.yz) >= tolerance, a.yz, 0.0),
+        where(abs(a.zx) >= tolerance, a.zx, 0.0),
+        where(abs(a.zy) >= tolerance, a.zy, 0.0),
+        where(abs(a.zz) >= tolerance, a.zz, 0.0),
     )
 
 
@@ -189,7 +190,7 @@ def load_on(model: ViscoPlastic, stress: Tensor, F: Tensor) -> float:
 def failed_stress(model: ViscoPlastic, stress: Tensor) -> Tensor:
     """The stress that failure leaves."""
     if model.zero_stress_upon_failure:
-        return isotropic(0.0)
+        return isotropic(like(0.0, stress.xx))
     if model.allow_no_tension:
         return isotropic(min(trace(stress) / 3.0, 0.0))
     return stress
@@ -217,38 +218,37 @@ def plasticity_state(
 
 
 @implements(stress_update, ViscoPlastic)
+@lanewise
 def visco_plastic_stress(
     model: ViscoPlastic, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
     """Elastic or flowing step; failed particles and those at rest keep their stress."""
-    state.heating[p] = 0.0
     d = without_noise(symmetric(point.velocity_gradient), model.tolerance)
-    if state.failed[p] == 1 or double_dot(d, d) == 0.0:
-        state.strain_rate[p] = 0.0
-        return StressUpdate(point.stress, 0.0, 0.0, 0.0, 0.0, point.localized)
+    moves = (state.failed[p] != 1) & (double_dot(d, d) != 0.0)
     density = material.density / determinant(point.deformation_gradient)
     warming = (point.temperature - point.previous_temperature) / step.dt
     rate = d - isotropic(model.coeff_thermal_expansion * warming)
-    state.strain_rate[p] = math.sqrt(double_dot(rate, rate) / 1.5)
+    state.strain_rate[p] = where(moves, math.sqrt(double_dot(rate, rate) / 1.5), 0.0)
+    before = plasticity_state(model, state, p, point, material, density)
+    mean = mean_stress(model.equation_of_state, before, trace(rate) * step.dt)
+    elastic = (
+        deviator(point.stress) + (2.0 * model.shear_modulus * step.dt) * deviator(rate) + isotropic(mean)
+    )
+    stress, heating = where(moves, elastic, point.stress), like(0.0, mean)
     hardening = Hardening(state.yield_stress[p], state.drag_stress[p], tensor_at(state.back_stress, p))
-    heating = 0.0
-    if overstress(model.visco_plasticity_model, hardening, point.stress) > 0.0:
-        flowed = flowing_stress(model, state, p, point, hardening, rate, step.dt)
-        stress = flowed.stress
-        heating = flowed.heat / (density * material.specific_heat)
-        state.heating[p] = heating * step.dt
-        state.plastic_temperature[p] += heating * step.dt
-    else:
-        before = plasticity_state(model, state, p, point, material, density)
-        mean = mean_stress(model.equation_of_state, before, trace(rate) * step.dt)
-        stress = (
-            deviator(point.stress) + (2.0 * model.shear_modulus * step.dt) * deviator(rate) + isotropic(mean)
-        )
+    flows = moves & (overstress(model.visco_plasticity_model, hardening, point.stress) > 0.0)
+    if anywhere(flows):
+        flowed = flowing_stress(model, state, p, flows, point, hardening, rate, step.dt)
+        stress = where(flows, flowed.stress, stress)
+        heating = where(flows, flowed.heat / (density * material.specific_heat), heating)
+    state.heating[p] = heating * step.dt
+    state.plastic_temperature[p] += heating * step.dt
     energy = double_dot(rate, 0.5 * (stress + point.stress)) * point.volume * step.dt
+    sound_speed = math.sqrt((model.bulk_modulus + 4.0 * model.shear_modulus / 3.0) / density)
     return StressUpdate(
         stress=stress,
-        sound_speed=math.sqrt((model.bulk_modulus + 4.0 * model.shear_modulus / 3.0) / density),
-        strain_energy=energy if state.failed[p] == 0 else 0.0,
+        sound_speed=where(moves, sound_speed, 0.0),
+        strain_energy=where(moves & (state.failed[p] == 0), energy, 0.0),
         heating_rate=heating,
         artificial_pressure=0.0,
         localized=point.localized,
@@ -265,19 +265,30 @@ class Flowed(NamedTuple):
 
 @inline
 def flowing_stress(
-    model: ViscoPlastic, state: Any, p: int, point: Point, hardening: Hardening, rate: Tensor, dt: float
+    model: ViscoPlastic,
+    state: Any,
+    p: int,
+    flows: bool,
+    point: Point,
+    hardening: Hardening,
+    rate: Tensor,
+    dt: float,
 ) -> Flowed:
-    """Stress after a step of flow; a particle that fails in it keeps the hardening of its start."""
+    """Stress after a step, where it ``flows``; a particle that fails in it keeps the hardening of its start."""
     elasticity = Elasticity(model.bulk_modulus, model.shear_modulus)
     found = flow(model.visco_plasticity_model, hardening, point.stress, rate, elasticity, dt)
     stress = point.stress + stiffness_of(elasticity, rate - found.rate * found.direction) * dt
     s = deviator(stress)
-    state.plastic_strain[p] += found.rate * dt
+    state.plastic_strain[p] += where(flows, found.rate * dt, 0.0)
     heat = TAYLOR_QUINNEY * math.sqrt(1.5 * double_dot(s, s)) * found.rate
-    if model.check_failure and load_on(model, stress, point.deformation_gradient) > state.strength[p]:
-        state.failed[p] = 1
-        return Flowed(failed_stress(model, stress), heat)
-    state.yield_stress[p] = found.hardening.yield_stress
-    state.drag_stress[p] = found.hardening.drag_stress
-    put_tensor(state.back_stress, p, found.hardening.back_stress)
+    hardens = flows
+    if model.check_failure:
+        breaks = load_on(model, stress, point.deformation_gradient) > state.strength[p]
+        state.failed[p] = where(flows & breaks, 1, state.failed[p])
+        stress = where(breaks, failed_stress(model, stress), stress)
+        hardens = flows & negation(breaks)
+    new = where(hardens, found.hardening, hardening)
+    state.yield_stress[p] = new.yield_stress
+    state.drag_stress[p] = new.drag_stress
+    put_tensor(state.back_stress, p, new.back_stress)
     return Flowed(stress, heat)

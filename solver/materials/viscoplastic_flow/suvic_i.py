@@ -6,7 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import where
 from solver.materials.viscoplastic_flow import (
     Elasticity,
     FlowStep,
@@ -84,6 +85,7 @@ def equivalent(reduced: Tensor) -> float:
 
 
 @implements(overstress, SuvicI)
+@lanewise
 def overstress_of_ice(model: SuvicI, hardening: Hardening, stress: Tensor) -> float:
     """The overstress x - Y."""
     return equivalent(deviator(stress) - hardening.back_stress) - hardening.yield_stress
@@ -111,12 +113,11 @@ def steady(model: SuvicI, rate: float, factor: float) -> Steady:
 @inline
 def approach(stress: float, limit: float, coefficient: float, strain: float) -> float:
     """A stress that grows with inelastic strain towards its limit, from below alone."""
-    if stress >= limit:
-        return stress
-    return stress + coefficient * strain * (1.0 - stress / limit)
+    return where(stress >= limit, stress, stress + coefficient * strain * (1.0 - stress / limit))
 
 
 @implements(flow, SuvicI)
+@lanewise
 def flow_of_ice(
     model: SuvicI, hardening: Hardening, stress: Tensor, rate: Tensor, elasticity: Elasticity, dt: float
 ) -> FlowStep:
