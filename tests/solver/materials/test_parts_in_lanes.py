@@ -34,7 +34,12 @@ from test_svk import RUBBER as SVK
 from test_swelling import PLASTIC, silicon
 from test_th_water import MODEL as TH_WATER
 from test_th_water import WATER as TH_WATER_MATERIAL
+from test_trans_iso_hyper import LIGAMENT
+from test_trans_iso_hyper import MATERIAL as TISSUE
+from test_trans_iso_hyper import VISCOUS as VISCOUS_LIGAMENT
 from test_ucnh_var import MODEL as UCNH_VAR
+from test_visco_plastic import ICE
+from test_visco_plastic import MODEL as CREEPING
 from test_visco_scram import EXPLOSIVE, PBX
 from test_water import LIQUID, WATER
 
@@ -283,7 +288,19 @@ MATERIALS: dict[str, tuple[Any, ...]] = {
     "soil_foam": (FOAM, COPPER),
     "svk": (SVK, COPPER),
     "thermo_water": (TH_WATER, TH_WATER_MATERIAL, 0.02),
+    "trans_iso_hyper": (LIGAMENT, TISSUE),
+    "trans_iso_hyper, failing": (
+        LIGAMENT._replace(failure_option=1.0, max_fiber_strain=1.05, max_matrix_strain=0.06),
+        TISSUE,
+    ),
     "ucnh_var": (UCNH_VAR._replace(usePlasticity=True), COPPER),
+    "visco_plastic": (CREEPING, ICE, 1.0e-2),
+    "visco_plastic, failing": (
+        CREEPING._replace(check_failure=True, failure_variable_mean=1.0e6, zero_stress_upon_failure=False),
+        ICE,
+        1.0e-2,
+    ),
+    "visco_trans_iso_hyper": (VISCOUS_LIGAMENT, TISSUE),
     "visco_scram": (PBX._replace(use_time_temperature_equation=True, useObjectiveRate=True), EXPLOSIVE),
     "water": (LIQUID, WATER),
 }
