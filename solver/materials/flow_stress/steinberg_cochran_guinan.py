@@ -6,8 +6,8 @@ import math
 from typing import Annotated, NamedTuple
 
 from solver.declare import Parameter, model
-from solver.dispatch import implements, inline, lanewise, singly
-from solver.lanes import like
+from solver.dispatch import implements, inline, lanewise
+from solver.lanes import anywhere, like, negation, where
 from solver.materials.flow_stress import flow_stress, hardening_slope, rate_slope
 from solver.materials.plasticity_state import PlasticityState
 
@@ -111,29 +111,29 @@ def rate_at(glide: Activation, stress: float) -> RateOfStress:
     """Plastic strain rate at a thermally activated stress: C1 s / (C1 C2 + s e), e = exp(U (1 - s/s_p)^2)."""
     distance = 1.0 - stress / glide.peierls_stress
     exponent = glide.energy * distance * distance
-    if exponent > 700.0:
-        return RateOfStress(0.0, 0.0)
-    slow = math.exp(exponent) * stress
+    possible = exponent <= 700.0
+    slow = math.exp(min(exponent, 700.0)) * stress
     drag = glide.C1 * glide.C2
     steepness = 2.0 * slow * glide.energy * distance * stress / glide.peierls_stress + drag
     total = drag + slow
-    return RateOfStress(glide.C1 * stress / total, glide.C1 * steepness / (total * total))
+    rate, slope = glide.C1 * stress / total, glide.C1 * steepness / (total * total)
+    return RateOfStress(where(possible, rate, 0.0), where(possible, slope, 0.0))
 
 
 @inline
 def bisected_stress(glide: Activation, rate: float) -> float:
     """Thermally activated stress at a plastic strain rate, by bisection up to the Peierls stress."""
-    low, high = TOLERANCE, glide.peierls_stress
+    low, high = like(TOLERANCE, rate), like(glide.peierls_stress, rate)
     low_excess = rate - rate_at(glide, low).rate
     for _ in range(MOST_ITERATIONS):
-        if high - low <= TOLERANCE:
+        wide = high - low > TOLERANCE
+        if not anywhere(wide):
             break
         middle = 0.5 * (high + low)
         excess = rate - rate_at(glide, middle).rate
-        if low_excess * excess > 0.0:
-            low, low_excess = middle, excess
-        else:
-            high = middle
+        above = low_excess * excess > 0.0
+        low_excess = where(wide & above, excess, low_excess)
+        low, high = where(wide & above, middle, low), where(wide & negation(above), middle, high)
     return 0.5 * (high + low)
 
 
@@ -145,24 +145,30 @@ def thermal_stress(model: SteinbergCochranGuinan, rate: float, temperature: floa
     return activated_stress(model, rate, temperature)
 
 
-@singly
+@inline
 def activated_stress(model: SteinbergCochranGuinan, rate: float, temperature: float) -> float:
     """Thermally activated stress at a plastic strain rate, by Newton's iteration, else by bisection."""
-    if rate < LEAST_RATE:
-        return 0.0
     glide = activation(model, temperature)
-    if rate > rate_at(glide, glide.peierls_stress).rate:
-        return glide.peierls_stress
-    stress = 0.5 * glide.peierls_stress
+    peierls = glide.peierls_stress
+    glides = rate >= LEAST_RATE
+    found = where(glides, peierls, 0.0)
+    unknown = glides & (rate <= rate_at(glide, like(peierls, rate)).rate)
+    iterates = unknown
+    stress = like(0.5 * peierls, rate)
     for _ in range(MOST_ITERATIONS):
         at = rate_at(glide, stress)
-        if not abs(at.slope) > 0.0:
-            return bisected_stress(glide, rate)
+        iterates = iterates & (abs(at.slope) > 0.0)
+        if not anywhere(iterates):
+            break
         change = (rate - at.rate) / at.slope
-        stress += change
-        if abs(change) < TOLERANCE * stress or abs(rate - at.rate) <= TOLERANCE:
-            return min(max(stress, 0.0), glide.peierls_stress)
-    return bisected_stress(glide, rate)
+        stress = where(iterates, stress + change, stress)
+        ends = (abs(change) < TOLERANCE * stress) | (abs(rate - at.rate) <= TOLERANCE)
+        found = where(iterates & ends, min(max(stress, 0.0), peierls), found)
+        unknown = unknown & negation(iterates & ends)
+        iterates = iterates & negation(ends)
+    if anywhere(unknown):
+        found = where(unknown, bisected_stress(glide, rate), found)
+    return found
 
 
 @implements(flow_stress, SteinbergCochranGuinan)
