@@ -8,8 +8,9 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from solver.declare import IntVector, Parameter, Vector, model
-from solver.dispatch import implements, inline
+from solver.dispatch import implements, inline, lanewise
 from solver.grid import GridIndex
+from solver.lanes import anywhere, like, where
 from solver.materials.constitutive import (
     Material,
     Neighbourhood,
@@ -159,12 +160,11 @@ def returned(model: NonlocalDruckerPrager, trial: Tensor, multiplier: float, str
     size = math.sqrt(0.5 * double_dot(s, s))
     less_shear = model.shear_modulus * multiplier / flow_size(model)
     less_mean = 3.0 * model.bulk_modulus * model.alpha_p * multiplier / flow_size(model)
-    if less_shear > size:
-        if model.alpha > 0.0:
-            return isotropic(strength / (3.0 * model.alpha))
-        less_shear = size
-    left = 1.0 - less_shear / size if size > 0.0 else 0.0
-    return left * s + isotropic(trace(trial) / 3.0 - less_mean)
+    left = 1.0 - min(less_shear, size) / where(size > 0.0, size, 1.0)
+    stress = left * s + isotropic(trace(trial) / 3.0 - less_mean)
+    if model.alpha > 0.0:
+        return where(less_shear > size, isotropic(strength / (3.0 * model.alpha)), stress)
+    return stress
 
 
 @inline
@@ -192,12 +192,13 @@ def flow_in(
     is, and the stress returns to the minimum.
     """
     local, wide, cohesion = state.local_before[p], state.nonlocal_before[p], state.cohesion[p]
-    multiplier = load / stiffness if load > 0.0 else 0.0
-    new_local, new_wide = local + model.h_local * multiplier, wide + model.h_nonlocal * average
-    if cohesion + new_local + new_wide < model.minimum_yield_stress:
+    multiplier = where(load > 0.0, load / stiffness, 0.0)
+    flow = Flow(multiplier, local + model.h_local * multiplier, wide + model.h_nonlocal * average)
+    softened = cohesion + flow.local_hardening + flow.nonlocal_hardening < model.minimum_yield_stress
+    if anywhere(softened):
         excess = loading(model, tensor_at(state.trial_stress, p)) - model.minimum_yield_stress
-        return Flow(excess / resistance(model), local, wide)
-    return Flow(multiplier, new_local, new_wide)
+        flow = where(softened, Flow(excess / resistance(model), local, wide), flow)
+    return flow
 
 
 @inline
@@ -212,6 +213,7 @@ def commit(model: NonlocalDruckerPrager, state: Any, p: int, flow: Flow) -> Tens
 
 
 @implements(stress_update, NonlocalDruckerPrager)
+@lanewise
 def nonlocal_stress(
     model: NonlocalDruckerPrager, state: Any, p: int, point: Point, material: Material, step: Step
 ) -> StressUpdate:
@@ -228,9 +230,10 @@ def nonlocal_stress(
     strength = state.cohesion[p] + state.local_hardening[p] + state.nonlocal_hardening[p]
     excess = loading(model, trial) - max(strength, model.minimum_yield_stress)
     stiffness = resistance(model) + model.h_local + model.h_nonlocal
-    flow = Flow(0.0, state.local_hardening[p], state.nonlocal_hardening[p])
-    if excess > 0.0:
-        flow = flow_in(model, state, p, excess, excess / stiffness, stiffness)
+    flow = Flow(like(0.0, excess), state.local_hardening[p], state.nonlocal_hardening[p])
+    flows = excess > 0.0
+    if anywhere(flows):
+        flow = where(flows, flow_in(model, state, p, excess, excess / stiffness, stiffness), flow)
     turn = rotation(point.deformation_gradient)
     stress = to_laboratory(turn, commit(model, state, p, flow)) - initial_stress(model)
     modulus = model.bulk_modulus + 4.0 * model.shear_modulus / 3.0

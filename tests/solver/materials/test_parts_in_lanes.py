@@ -25,6 +25,7 @@ from test_model_exchange import COPPER, MODELS, TEMPERATURE, G, K
 from test_mohr_coulomb import EARTH, SOIL
 from test_murnaghan_mpm import MODEL as MURNAGHAN
 from test_mw_visco_elastic import MODEL as MW_VISCO_ELASTIC
+from test_nonlocal_drucker_prager import rock
 from test_p_alpha import MODEL as POROUS
 from test_p_alpha import SAND
 from test_program_burn import HE as LIT_MATERIAL
@@ -262,6 +263,7 @@ WET_SOIL = SOIL._replace(
     suction=2.0e4,
     SpecVol=1.8,
 )
+ROCK = rock(h_local=-2.0e8, h_nonlocal=-1.0e8, minimum_yield_stress=1.0e6)
 MATERIALS: dict[str, tuple[Any, ...]] = {
     "arruda_boyce": (ARRUDA_BOYCE, COPPER),
     "cam_clay": (clay(), EARTH, 1.0e-2),
@@ -281,6 +283,7 @@ MATERIALS: dict[str, tuple[Any, ...]] = {
     "mohr_coulomb, all options": (WET_SOIL, EARTH, 1.0e-2),
     "murnaghan": (MURNAGHAN, COPPER),
     "mw_visco_elastic": (MW_VISCO_ELASTIC, COPPER),
+    "nonlocal_drucker_prager": (ROCK, COPPER, 0.1),
     "p_alpha": (POROUS._replace(shear_modulus=1.0e8, yield_stress=1.0e6), SAND),
     "program_burn": (LIT, LIT_MATERIAL, 0.3),
     "rf_elastic_plastic": (silicon(PLASTIC), COPPER),
