@@ -29,7 +29,7 @@ from solver.materials.return_algorithm.radial_return import RadialReturn
 from solver.materials.shear_modulus.constant_shear import ConstantShear
 from solver.materials.specific_heat.constant_specific_heat import ConstantSpecificHeat
 from solver.materials.specific_heat.copper_specific_heat import CopperSpecificHeat
-from solver.materials.stability.drucker import Drucker
+from solver.materials.stability.drucker_becker import DruckerBecker
 from solver.materials.stability.no_check import NoCheck
 from solver.materials.yield_condition.von_mises import VonMises
 from solver.particles import Particles, new_arrays
@@ -49,7 +49,7 @@ COPPER_LAWS = Choice(
     SCG_MELT,
     CopperSpecificHeat(),
     VonMises(),
-    Drucker(),
+    DruckerBecker(),
     NoDamage(),
     RadialReturn(),
 )
