@@ -10,13 +10,13 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def deferred_kernel(function: Function) -> Function:
-    """A ``kernel_with_scratch`` that is compiled, or taken from the disk cache, when it is first called."""
+    """A ``kernel`` that is compiled, or taken from the disk cache, when it is first called."""
 
     @functools.cache
     def compiled() -> Callable[..., Any]:
-        from solver.jit import kernel_with_scratch
+        from solver.jit import kernel
 
-        return kernel_with_scratch(function)
+        return kernel(function)
 
     @functools.wraps(function)
     def call(*args: Any) -> Any:

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from solver.grid import FACES, Grid, GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
-from solver.jit import kernel_with_scratch
+from solver.jit import kernel
 from solver.particles import Particles
+from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import tensor_at
 from solver.workspace import Workspace
 
@@ -122,12 +123,12 @@ def on_face(grid: Grid, face: str) -> Array:
     return np.asarray(z[:, None, None] & y[:, None] & x).ravel()
 
 
-@kernel_with_scratch
+@kernel
 def scatter_stress(interpolator: Any, grid: GridIndex, particles: Particles, sums: Any) -> None:
     """Add V_p sigma_p S_ip of each particle to the nodes (N, 9), matrices row by row."""
-    nodes = np.empty(MOST_NODES, np.int64)
-    weights = np.empty(MOST_NODES)
-    gradients = np.empty((MOST_NODES, 3))
+    nodes = scratch_numbers(MOST_NODES, np.int64)
+    weights = scratch_numbers(MOST_NODES, np.float64)
+    gradients = scratch_rows(MOST_NODES, 3)
     for p in range(particles.mass.shape[0]):
         x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
         domain = particle_domain(

@@ -16,6 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.scratch import scratch_numbers
+
 Floats = NDArray[np.float64]
 
 PERMUTATION = (4, 7, 10, 15, 6, 13, 1, 8, 12, 9, 0, 14, 5, 11, 2, 3)
@@ -54,7 +56,13 @@ def patch_seed(seed: int, patch: int) -> int:
 
 def _walk(seed: int, permutation: Any, drawn: Any) -> None:
     """Fill ``drawn`` (m,) with the numbers that follow the first one, which is the same for every seed."""
-    last, middle, oldest = np.zeros(LANES, np.int64), np.zeros(LANES, np.int64), np.zeros(LANES, np.int64)
+    last, middle, oldest = (
+        scratch_numbers(LANES, np.int64),
+        scratch_numbers(LANES, np.int64),
+        scratch_numbers(LANES, np.int64),
+    )
+    for lane in range(LANES):
+        last[lane] = middle[lane] = oldest[lane] = 0
     for lane in range(4, LANES):
         middle[lane] = (seed >> (4 * (LANES - 1 - lane))) & 15
     place = 4
@@ -73,9 +81,9 @@ def _walk(seed: int, permutation: Any, drawn: Any) -> None:
 
 @cache
 def _compiled_walk() -> Callable[[int, Any, Any], None]:
-    from solver.jit import kernel_with_scratch
+    from solver.jit import kernel
 
-    return kernel_with_scratch(_walk)
+    return kernel(_walk)
 
 
 def musil(seed: int, count: int) -> Floats:

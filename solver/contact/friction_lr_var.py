@@ -14,6 +14,7 @@ from solver.contact.particle_shapes import ParticleShapes, particle_shapes, shap
 from solver.declare import Parameter, model
 from solver.deferred import deferred_kernel
 from solver.interpolation.shape import MOST_NODES
+from solver.scratch import scratch_numbers, scratch_rows
 
 
 class FrictionEntry(NamedTuple):
@@ -84,9 +85,9 @@ def divide_at(nodes: Array, sums: Array, mass: Array, means: Array) -> None:
 def add_weighted(shapes: ParticleShapes, values: Array, mass: Array, nodal: Array) -> None:
     """Sum S times mass times a value per particle (n,) at the nodes (N,)."""
     nodes, weights, gradients = (
-        np.empty(MOST_NODES, np.int64),
-        np.empty(MOST_NODES),
-        np.empty((MOST_NODES, 3)),
+        scratch_numbers(MOST_NODES, np.int64),
+        scratch_numbers(MOST_NODES, np.float64),
+        scratch_rows(MOST_NODES, 3),
     )
     for p in range(values.shape[0]):
         weighted = values[p] * mass[p]

@@ -20,6 +20,7 @@ from solver.dispatch import inline
 from solver.interpolation.shape import MOST_NODES, particle_domain
 from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
+from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import tensor_at
 
 NO_ALPHA = -1
@@ -239,9 +240,9 @@ def count_neighbours(shapes: ParticleShapes, alpha: Array, latest: Array, counts
     """
     latest[:] = -1
     nodes, weights, gradients = (
-        np.empty(MOST_NODES, np.int64),
-        np.empty(MOST_NODES),
-        np.empty((MOST_NODES, 3)),
+        scratch_numbers(MOST_NODES, np.int64),
+        scratch_numbers(MOST_NODES, np.float64),
+        scratch_rows(MOST_NODES, 3),
     )
     for p in range(shapes.position.shape[0]):
         near[p] = False
@@ -272,9 +273,9 @@ def list_neighbours(
     """
     latest[:] = -1
     nodes, weights, gradients = (
-        np.empty(MOST_NODES, np.int64),
-        np.empty(MOST_NODES),
-        np.empty((MOST_NODES, 3)),
+        scratch_numbers(MOST_NODES, np.int64),
+        scratch_numbers(MOST_NODES, np.float64),
+        scratch_rows(MOST_NODES, 3),
     )
     for p in range(near.shape[0]):
         if not near[p]:
@@ -298,9 +299,10 @@ def separate(nodes: Array, neighbours: Neighbours, penalty: float, normal: Array
     f = 2 / (1 + exp(-(phi_xyz . x + phi_0))) - 1 and c = -1 or 1 the side of a particle. It ends when the
     direction stays; if it never does, the direction that changed least is taken.
     """
-    matrix, right = np.empty((4, 4)), np.empty(4)
+    matrix, right, phi = scratch_rows(4, 4), scratch_numbers(4, np.float64), scratch_numbers(4, np.float64)
     for n in nodes:
-        phi = np.zeros(4)
+        for i in range(4):
+            phi[i] = 0.0
         direction = best = (0.0, 0.0, 0.0)
         least_change = 1.0
         for _ in range(MOST_ITERATIONS):
@@ -326,7 +328,8 @@ def newton_system(
     neighbours: Neighbours, first: int, last: int, phi: Array, penalty: float, matrix: Array, right: Array
 ) -> None:
     """Matrix (4, 4) and right-hand side (4,) of one Newton step over the particles first <= e < last."""
-    x = np.ones(4)
+    x = scratch_numbers(4, np.float64)
+    x[3] = 1.0
     for i in range(4):
         for j in range(4):
             matrix[i, j] = 0.0
@@ -380,9 +383,9 @@ def reach(
 ) -> None:
     """Enter how far the face centres of the near particles on the surface of a material reach along the normals."""
     nodes, weights, gradients = (
-        np.empty(MOST_NODES, np.int64),
-        np.empty(MOST_NODES),
-        np.empty((MOST_NODES, 3)),
+        scratch_numbers(MOST_NODES, np.int64),
+        scratch_numbers(MOST_NODES, np.float64),
+        scratch_rows(MOST_NODES, 3),
     )
     prominence = surfaces.prominence[material]
     for p in range(near.shape[0]):

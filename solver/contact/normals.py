@@ -17,6 +17,7 @@ from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, reach
 from solver.nodal import EMPTY_MASS
 from solver.particles import Particles
+from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import tensor_at
 
 SHORTEST = 1.0e-15
@@ -80,7 +81,8 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     for complete in on_their_way:
         complete()
     if scene.colinear_normals:
-        make_colinear(shared, fields.normal, nodal.mass)
+        averaged = scene.workspace.rows("normals of a node", materials, float, 3)
+        make_colinear(shared, fields.normal, nodal.mass, averaged)
     for m in range(materials):
         scene.boundary_conditions.apply_symmetry(fields.normal[m], m, wanted)
     finish(shared, fields, nodal.mass, stress)
@@ -163,9 +165,9 @@ def add_particles(
 
     Particles in cells that ``near`` does not mark touch none of them.
     """
-    nodes = np.empty(MOST_NODES, np.int64)
-    weights = np.empty(MOST_NODES)
-    gradients = np.empty((MOST_NODES, 3))
+    nodes = scratch_numbers(MOST_NODES, np.int64)
+    weights = scratch_numbers(MOST_NODES, np.float64)
+    gradients = scratch_rows(MOST_NODES, 3)
     for p in range(mass.shape[0]):
         if not may_reach(shapes, p, near):
             continue
@@ -184,10 +186,12 @@ def add_particles(
 
 
 @deferred_kernel
-def make_colinear(nodes: Array, normal: Array, mass: Array) -> None:
-    """n_m <- (n_m - sum_k m_k n_k / sum_k m_k) / 2 over the other materials k; 0 where m has no mass."""
+def make_colinear(nodes: Array, normal: Array, mass: Array, averaged: Array) -> None:
+    """n_m <- (n_m - sum_k m_k n_k / sum_k m_k) / 2 over the other materials k; 0 where m has no mass.
+
+    ``averaged`` (materials, 3) is room for the normals of a node.
+    """
     materials = mass.shape[0]
-    averaged = np.empty((materials, 3))
     for n in nodes:
         for m in range(materials):
             others, total = (0.0, 0.0, 0.0), 0.0

@@ -22,17 +22,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def kernel(function: Function) -> Function:
     """Compile a function with numba for whatever models it is called with, cached on disk across runs.
 
-    While it runs, other threads of Python go on. It can make no arrays: so references to arrays are not counted, which
-    otherwise costs more than the work of a short loop.
+    While it runs, other threads of Python go on. It can make no arrays but those of ``solver.scratch``: so references
+    to arrays are not counted, which otherwise costs more than the work of a short loop.
     """
-    return _kernel(function, _nrt=False)
-
-
-def kernel_with_scratch(function: Function) -> Function:
-    """As :func:`kernel`, for a function that makes arrays for its own use."""
-    return _kernel(function)
-
-
-def _kernel(function: Any, **options: bool) -> Any:
-    always = {"nopython": True, "boundscheck": None, "nogil": True, "no_cfunc_wrapper": True}
-    return Kernel(function, targetoptions={**always, **OPTIONS, **options})
+    always = {"nopython": True, "boundscheck": None, "nogil": True, "no_cfunc_wrapper": True, "_nrt": False}
+    return Kernel(function, targetoptions={**always, **OPTIONS})

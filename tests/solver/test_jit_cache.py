@@ -13,7 +13,7 @@ import pytest
 from numba.core.codegen import JITCodeLibrary
 
 from solver.dispatch import inline
-from solver.jit import kernel, kernel_with_scratch
+from solver.jit import kernel
 
 PROGRAM = """
 import os
@@ -38,7 +38,7 @@ def test_kernels_are_cached_by_the_state_of_the_sources_whoever_imports_numba_fi
 
 
 MODULE = """
-from solver.jit import kernel, kernel_with_scratch
+from solver.jit import kernel
 
 @kernel
 def total(record, values):
@@ -179,10 +179,10 @@ def test_what_a_helper_knows_of_python_reaches_the_kernel_that_contains_it() -> 
     @inline
     def root(number):
         if number < 0.0:
-            raise ValueError("no root of", number)
+            raise ValueError("no root of", -1.0)
         return number**0.5
 
-    @kernel_with_scratch
+    @kernel
     def roots(numbers):
         for i in range(len(numbers)):
             numbers[i] = root(numbers[i])

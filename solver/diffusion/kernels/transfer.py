@@ -10,8 +10,9 @@ from solver.diffusion import diffusivity, drift
 from solver.diffusion.solute import Solute
 from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
-from solver.jit import kernel_with_scratch
+from solver.jit import kernel
 from solver.particles import Particles
+from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import tensor_at, trace
 
 SUMS = 3
@@ -19,7 +20,7 @@ SUMS = 3
 times the rate by fluxes through the surface."""
 
 
-@kernel_with_scratch
+@kernel
 def concentration_to_grid(
     interpolator: Any,
     grid: GridIndex,
@@ -32,9 +33,9 @@ def concentration_to_grid(
 
     ``with_gradients`` : nodes get c - grad c . (x_p - x_i), the gradient-enhanced projection.
     """
-    nodes = np.empty(MOST_NODES, np.int64)
-    weights = np.empty(MOST_NODES)
-    gradients = np.empty((MOST_NODES, 3))
+    nodes = scratch_numbers(MOST_NODES, np.int64)
+    weights = scratch_numbers(MOST_NODES, np.float64)
+    gradients = scratch_rows(MOST_NODES, 3)
     layer = grid.nodes[0] * grid.nodes[1]
     for p in range(particles.mass.shape[0]):
         x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
@@ -55,7 +56,7 @@ def concentration_to_grid(
             sums[nodes[n], 2] += share * solute.external_rate[p]
 
 
-@kernel_with_scratch
+@kernel
 def fluxes_to_grid(
     law: Any,
     hold: bool,
@@ -72,9 +73,9 @@ def fluxes_to_grid(
     ``hold`` : particles keep the D that they have. ``flat`` : the third direction has no gradient (axisymmetry).
     ``mean_stress`` (N,) is that of the nodes. Returns the largest D.
     """
-    nodes = np.empty(MOST_NODES, np.int64)
-    weights = np.empty(MOST_NODES)
-    gradients = np.empty((MOST_NODES, 3))
+    nodes = scratch_numbers(MOST_NODES, np.int64)
+    weights = scratch_numbers(MOST_NODES, np.float64)
+    gradients = scratch_rows(MOST_NODES, 3)
     largest = 0.0
     for p in range(particles.mass.shape[0]):
         x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
@@ -101,7 +102,7 @@ def fluxes_to_grid(
     return largest
 
 
-@kernel_with_scratch
+@kernel
 def concentration_to_particles(
     interpolator: Any,
     grid: GridIndex,
@@ -117,9 +118,9 @@ def concentration_to_particles(
 
     ``flat`` : the third direction has no gradient (axisymmetry).
     """
-    nodes = np.empty(MOST_NODES, np.int64)
-    weights = np.empty(MOST_NODES)
-    gradients = np.empty((MOST_NODES, 3))
+    nodes = scratch_numbers(MOST_NODES, np.int64)
+    weights = scratch_numbers(MOST_NODES, np.float64)
+    gradients = scratch_rows(MOST_NODES, 3)
     for p in range(particles.mass.shape[0]):
         x, y, z = particles.position[p, 0], particles.position[p, 1], particles.position[p, 2]
         F, size = tensor_at(particles.deformation_gradient, p), tensor_at(particles.size, p)

@@ -10,7 +10,7 @@ from solver.declare import IntVector
 from solver.dispatch import inline
 from solver.grid import GridIndex
 from solver.interpolation.shape import MOST_NODES, particle_domain, shape_functions
-from solver.jit import kernel, kernel_with_scratch
+from solver.jit import kernel
 from solver.materials.constitutive import Neighbourhood
 from solver.materials.nonlocal_drucker_prager import (
     Flow,
@@ -23,6 +23,7 @@ from solver.materials.nonlocal_drucker_prager import (
     resistance,
 )
 from solver.particles import Array, Particles
+from solver.scratch import scratch_numbers, scratch_rows
 from solver.tensor import double_dot, isotropic, put_tensor, rotation, symmetric, tensor_at, to_laboratory
 
 TOLERANCE = 1.0e-14
@@ -79,14 +80,14 @@ def start(
             multiplier[p] = excess[p] / (resistance(model) + model.h_local)
 
 
-@kernel_with_scratch
+@kernel
 def project(
     interpolator: Any, grid: GridIndex, particles: Particles, position: Array, values: Array, sums: Array
 ) -> None:
     """Add values S of the particles to sums (N,) at the nodes, by their sizes of the start."""
-    nodes = np.empty(MOST_NODES, np.int64)
-    weights = np.empty(MOST_NODES)
-    gradients = np.empty((MOST_NODES, 3))
+    nodes = scratch_numbers(MOST_NODES, np.int64)
+    weights = scratch_numbers(MOST_NODES, np.float64)
+    gradients = scratch_rows(MOST_NODES, 3)
     for p in range(values.shape[0]):
         if values[p] == 0.0:
             continue
