@@ -21,7 +21,7 @@ from solver.particles import append, keep, new_arrays, state_variables
 from solver.random import Births
 
 if TYPE_CHECKING:
-    from solver.simulation import Body
+    from solver.body import Body
 
 Array = NDArray[Any]
 

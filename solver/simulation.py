@@ -10,16 +10,16 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from solver.body import Body
 from solver.boundary_conditions import BoundaryConditions
 from solver.cohesive_zones import CohesiveZones
 from solver.contact.law import ContactLaw, ContactScene
-from solver.diffusion.solute import NoSolute
 from solver.domains.communicator import largest_number
 from solver.domains.exchange import Exchange, OneRank, Status
 from solver.domains.reach import layers_reached
@@ -32,19 +32,15 @@ from solver.kernels.chunks import number_of_chunks
 from solver.kernels.transfer import CHANNELS, EXTERNAL_FORCE, GATHERED, MOTION_SUMS, Transfer
 from solver.lanes import new_rows
 from solver.materials.constitutive import (
-    Material,
     Neighbourhood,
     Step,
     couple_particles,
     initial_sound_speed,
     is_coupled,
-    numbers_only,
     time_step_limit,
 )
-from solver.materials.failure import Failure
 from solver.nodal import NodalFields, new_nodal_fields
 from solver.nodal_stress import on_face, scatter_stress, side_of
-from solver.particles import Particles, keep
 from solver.performance.phases import Clock, Phase, no_clock
 from solver.sorting import in_order_of_cells, wants_sorting
 from solver.team import Team, node_blocks
@@ -65,66 +61,6 @@ class DivergedError(RuntimeError):
 
 class NodesTooFastError(RuntimeError):
     """A node would cross more than half a cell; nothing has moved yet, so the step can be repeated with less."""
-
-
-@dataclass
-class Body:
-    """The particles of one material of a deck, with all that acts on them alone.
-
-    Attributes
-    ----------
-    index : material index in the deck.
-    name : the material's name in the deck, or its constitutive model's.
-    material : constants.
-    model : the constitutive model's record.
-    state : the model's own arrays.
-    particles : the particles.
-    failure : how they are damaged, and what becomes of those that failed.
-    solute : what they carry of a diffusing substance.
-    rigid : moves as contact tells it and carries no stress.
-    transmits_force : feels no acceleration of its own (Uintah's force-transmitting material).
-    activation_time : before this time the body neither weighs nor pushes.
-    is_active : False keeps it out until ``activation_time``, and for good where that is zero.
-    possible_alpha : whether contact may take its surface for the one that separates it from the others.
-    """
-
-    index: int
-    name: str
-    material: Material
-    model: Any
-    state: Any
-    particles: Particles
-    failure: Failure
-    solute: Any = field(default_factory=NoSolute)
-    rigid: bool = False
-    transmits_force: bool = False
-    activation_time: float = 0.0
-    is_active: bool = True
-    possible_alpha: bool = True
-
-    @cached_property
-    def numeric_model(self) -> Any:
-        """The model as kernels take it."""
-        return numbers_only(self.model)
-
-    def takes_part(self, time: float) -> bool:
-        """Whether the body is on the grid in a step that begins at a time."""
-        return time >= self.activation_time and (self.is_active or self.activation_time > 0.0)
-
-    def keep(self, kept: Array) -> None:
-        """Keep the particles that a mask (n,) or indices name, in that order."""
-        self.records = tuple(keep(record, kept) for record in self.records)
-
-    @property
-    def records(self) -> tuple[Any, ...]:
-        """All arrays of the particles: NamedTuples whose fields declare how an archive calls them."""
-        failure = self.failure
-        return self.particles, self.state, failure.damage_state, failure.erosion_state, self.solute
-
-    @records.setter
-    def records(self, records: tuple[Any, ...]) -> None:
-        self.particles, self.state, damage_state, erosion_state, self.solute = records
-        self.failure = self.failure._replace(damage_state=damage_state, erosion_state=erosion_state)
 
 
 @dataclass

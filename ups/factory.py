@@ -389,7 +389,7 @@ class _Builder:
     def _body(
         self, index: int, section: MaterialSection, creation: Creation, contact: tuple[ContactLaw, ...]
     ) -> Any:
-        from solver.simulation import Body
+        from solver.body import Body
 
         model = section.constitutive_model
         material = section.constants

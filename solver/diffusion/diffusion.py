@@ -19,7 +19,8 @@ from solver.loads.scalar_flux import ScalarFlux
 from solver.particles import new_arrays
 
 if TYPE_CHECKING:
-    from solver.simulation import Body, Simulation
+    from solver.body import Body
+    from solver.simulation import Simulation
 
 Array = NDArray[Any]
 

@@ -14,7 +14,7 @@ from solver.materials.constitutive import coupling_length
 from solver.tensor import tensor_at
 
 if TYPE_CHECKING:
-    from solver.simulation import Body
+    from solver.body import Body
 
 MOST = 1.0e6
 """Cells; a corner that is farther away belongs to a run that has failed."""

@@ -30,7 +30,8 @@ from solver.performance.phases import Phase
 from solver.tensor import tensor_at
 
 if TYPE_CHECKING:
-    from solver.simulation import Body, Simulation
+    from solver.body import Body
+    from solver.simulation import Simulation
 
 SAMPLE = 32
 """Particles of a body on which operations are counted."""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from solver.body import Body
 from solver.boundary_conditions import BoundaryConditions, Condition, Region
 from solver.flags import Flags
 from solver.grid import Grid, Patch
@@ -15,7 +16,7 @@ from solver.materials.constitutive import Material, NoState
 from solver.materials.failure import new_failure
 from solver.materials.hypo_elastic import HypoElastic
 from solver.particles import Particles, new_arrays
-from solver.simulation import Body, Simulation
+from solver.simulation import Simulation
 
 MATERIAL = Material(
     density=2.0,
