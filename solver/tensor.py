@@ -320,9 +320,9 @@ def cosine_of_third(c: float) -> float:
 def principal_values(a: Tensor) -> Principal:
     """The eigenvalues of a symmetric tensor, largest first, to the rounding of the tensor's size.
 
-    The deviator over 2 sqrt(J2 / 3), u, has the values cos(t) with the same cos(3 t) for all three. One of them
-    is apart from the others, and these are about minus its half as far from each other as sin(3 t) says, which is
-    the size of the part of u^2 beside I and u: so that two values that meet keep all digits.
+    The deviator over 2 sqrt(J2 / 3), u, has three values cos(t) with the same cos(3 t). The one apart is a root of
+    4 x^3 - 3 x = cos(3 t); the others lie about -x / 2, each sqrt(3) / 2 sin(t) from it, where sin(3 t) = sin(t)
+    (4 x^2 - 1). As sin(3 t) is the size of the part of u^2 beside I and u, two values that meet keep all digits.
     """
     mean = trace(a) / 3.0
     s = deviator(a)
