@@ -112,7 +112,7 @@ def rate_at(glide: Activation, stress: float) -> RateOfStress:
     distance = 1.0 - stress / glide.peierls_stress
     exponent = glide.energy * distance * distance
     possible = exponent <= 700.0
-    slow = math.exp(min(exponent, 700.0)) * stress
+    slow = math.exp(where(possible, exponent, 0.0)) * stress
     drag = glide.C1 * glide.C2
     steepness = 2.0 * slow * glide.energy * distance * stress / glide.peierls_stress + drag
     total = drag + slow
