@@ -6,6 +6,7 @@ model file makes new ones. Import numba from here, so that it knows the folder.
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import importlib.util
 import os
@@ -80,6 +81,7 @@ from numba.core.caching import (  # noqa: E402 - after numba
     FunctionCache,
     IndexDataCacheFile,
 )
+from numba.core.compiler_lock import global_compiler_lock  # noqa: E402 - after numba
 from numba.core.registry import CPUDispatcher  # noqa: E402 - after numba
 from numba.core.runtime import _nrt_python  # noqa: E402 - after numba
 
@@ -91,6 +93,17 @@ SECONDS_BETWEEN_LOOKS = 0.02
 
 _elsewhere: dict[tuple[Kernel, Any], subprocess.Popen[bytes]] = {}
 """Processes that compile a kernel for arguments of some types."""
+
+
+@contextmanager
+def _collecting_seldom() -> Iterator[None]:
+    """Look for dead objects in cycles seldom: a compiler makes many that live, and a seventh of its time went there."""
+    first, *others = gc.get_threshold()  # the first is 0 where nobody looks
+    gc.set_threshold(first and max(first, 500_000), *others)
+    try:
+        yield
+    finally:
+        gc.set_threshold(first, *others)
 
 
 class Kernel(CPUDispatcher):
@@ -112,7 +125,8 @@ class Kernel(CPUDispatcher):
             with event.trigger_event("numba:compile", data={"dispatcher": self, "args": sig}):
                 while compiler.poll() is None and not self.is_stored(sig):
                     time.sleep(SECONDS_BETWEEN_LOOKS)
-        return super().compile(sig)
+        with global_compiler_lock, _collecting_seldom():
+            return super().compile(sig)
 
     def is_stored(self, sig: Any) -> bool:
         """Whether machine code for arguments of some types is on the disk."""
