@@ -6,8 +6,9 @@ They are compiled once into lists of node operations; applying them is one kerne
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -130,9 +131,14 @@ class BoundaryConditions:
     def _run(self, label: str, field: Array, material: int, touched: Array) -> None:
         operations = self._operations[label, material]
         if len(operations.kind):
-            from solver.kernels.nodes import apply_operations
+            self._apply(operations, touched, field)
 
-            apply_operations(operations, touched, field)
+    @cached_property
+    def _apply(self) -> Callable[[Operations, Array, Array], None]:
+        from solver.jit.calls import Calls
+        from solver.kernels.nodes import apply_operations
+
+        return partial(Calls(), apply_operations)
 
     def _conditions(self, face: str, label: str, material: int) -> list[tuple[Region, Condition]]:
         """The conditions in force for a material: its own, else those for all materials."""

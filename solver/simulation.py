@@ -27,6 +27,7 @@ from solver.flags import Flags
 from solver.grid import FACES, Grid, NodeBlock
 from solver.interpolation.shape import Sums
 from solver.jit.ahead import compile_ahead
+from solver.jit.calls import Calls
 from solver.kernels import nodes, settle, stress, transfer
 from solver.kernels.chunks import number_of_chunks
 from solver.kernels.transfer import CHANNELS, EXTERNAL_FORCE, GATHERED, MOTION_SUMS, Transfer
@@ -116,6 +117,8 @@ class Simulation:
             self.exchange = OneRank(self.grid)
         self.face_forces: dict[str, tuple[float, float, float]] = {}
         self._fault = ""
+        self._call = Calls()
+        self._calls_of = [Calls() for _ in self.bodies]
         self._agreed_reach: int | None = None
         self._kinematics = stress.Kinematics(
             self.flags.minimum_subcycles_for_F, self.flags.pressure_stabilization
@@ -235,7 +238,7 @@ class Simulation:
             cells = self._particle_cells(body)
             neighbourhood = self._neighbourhood(body, dt)
             self._move(m, body, dt)
-            stable = min(stable, self._update_stress(body, cells, dt))
+            stable = min(stable, self._update_stress(m, body, cells, dt))
             if neighbourhood is not None:
                 change = couple_particles(body.model, body.state, body.particles, neighbourhood)
                 for material in (body.index, -1):
@@ -358,7 +361,7 @@ class Simulation:
         nodal, (rows, touched) = self.nodal, self._sums_of(m)
         self._node_lists[m].reverse()  # the last step's is needed once more
         listed = self._node_lists[m][0]
-        count = nodes.list_touched(touched, touched.view(np.uint64), listed)
+        count = self._call(nodes.list_touched, touched, touched.view(np.uint64), listed)
         self._over_nodes(self._active[m], nodes.forget, touched, self._fields[m])
         self._active[m] = listed[:count]
         projected = self._projected_temperature[m]
@@ -371,7 +374,9 @@ class Simulation:
         options, index, sums = self._transfer(body), self.grid.index, self._sums_of(m)
 
         def fill(block: NodeBlock) -> None:
-            transfer.particles_to_grid(self.interpolator, index, block, body.particles, options, sums)
+            self._call(
+                transfer.particles_to_grid, self.interpolator, index, block, body.particles, options, sums
+            )
 
         self.team.run([partial(fill, block) for block in self._node_blocks(m, body)])
 
@@ -390,7 +395,9 @@ class Simulation:
     def _over_nodes(self, active: Array, work: Callable[..., None], *values: Any) -> None:
         """Call ``work(nodes, *values)`` for the listed nodes, a part in each thread."""
         members = self.team.size_for(len(active) // NODES_FOR_A_PARTICLE)
-        self.team.share(len(active), members, lambda first, last: work(active[first:last], *values))
+        self.team.share(
+            len(active), members, lambda first, last: self._call(work, active[first:last], *values)
+        )
 
     def _in_chunks(self, count: int, work: Callable[[int, int, Array], None]) -> Array:
         """Call ``work(first, last, sums)`` for chunks of particles or nodes; the sums (chunks, ..) that it stores."""
@@ -464,7 +471,7 @@ class Simulation:
         motion = nodes.Motion(
             self.gravity, self.flags.artificial_damping_coeff, self.flags.minimum_mass_for_acc
         )
-        accelerate = partial(nodes.accelerate, active, fields, motion, dt, self._uncounted)
+        accelerate = partial(self._call, nodes.accelerate, active, fields, motion, dt, self._uncounted)
         mass, *force = self._in_chunks(len(active), accelerate)[:, :4].sum(axis=0)
         if body.transmits_force:
             nodal.acceleration[m] = 0.0
@@ -519,7 +526,8 @@ class Simulation:
         options, index = self._transfer(body), self.grid.index
 
         def move(first: int, last: int, sums: Array) -> None:
-            transfer.grid_to_particles(
+            self._call(
+                transfer.grid_to_particles,
                 self.interpolator,
                 index,
                 particles,
@@ -555,13 +563,14 @@ class Simulation:
         nodes.divide_by_mass(self._active[m], sums.rows, nodal.mass[m])
         return filtered
 
-    def _update_stress(self, body: Body, cells: Array, dt: float) -> float:
+    def _update_stress(self, m: int, body: Body, cells: Array, dt: float) -> float:
         self.clock(Phase.STRESS)
         step = self.constants_of_step(dt)
         if self.flags.pressure_stabilization:
             self._average_dilatation(body, cells, dt)
         loop = self._stress_loop(body, cells, step)
-        stressed = stress.total(self._in_chunks(len(body.particles), partial(stress.update_stresses, loop)))
+        update = partial(stress.update_stresses, loop, call=self._calls_of[m])
+        stressed = stress.total(self._in_chunks(len(body.particles), update))
         if not stressed.finite and not self._fault:
             self._fault = (
                 f"material {body.index} ({body.name}) has a stress or position that is not a finite number "
@@ -640,7 +649,7 @@ class Simulation:
     def _settle(self, body: Body) -> None:
         count = len(body.particles)
         kept = self._workspace.rows("kept", count, np.bool_)
-        work = partial(settle.settle, body.particles, self._space, kept)
+        work = partial(self._call, settle.settle, body.particles, self._space, kept)
         if self._in_chunks(count, work)[:, 0].any():
             body.keep(kept)
 

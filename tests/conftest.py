@@ -26,6 +26,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker(pytest.mark.skip(reason="takes minutes; run with -m slow"))
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _types_are_checked() -> None:
+    """Kernels that are called without a look at the types are given the same types each time."""
+    from solver.jit.calls import Calls
+
+    Calls.checks = True
+
+
 @pytest.fixture(scope="session")
 def shared() -> Path:
     """The folder of reference runs, decks and archives; a test that asks for it is skipped without it."""

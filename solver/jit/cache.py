@@ -128,6 +128,13 @@ class Kernel(CPUDispatcher):
         with global_compiler_lock, _collecting_seldom():
             return super().compile(sig)
 
+    def for_types_of(self, *values: Any) -> Callable[..., Any]:
+        """The kernel for values of these types, as a function that does not look at types."""
+        signature = tuple(map(self.typeof_pyval, values))
+        if signature not in self.overloads:
+            self.compile(signature)
+        return self.overloads[signature].entry_point
+
     def is_stored(self, sig: Any) -> bool:
         """Whether machine code for arguments of some types is on the disk."""
         return _Cache(self.py_func).holds(sig, self.targetctx)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from solver.declare import Vector
 from solver.dispatch import inline, singly, takes_lanes
 from solver.jit import kernel
+from solver.jit.calls import call
 from solver.kernels.chunks import CHUNK
 from solver.lanes import WIDTH, Eight, everywhere, floor, largest_of, sum_of, where
 from solver.materials.constitutive import Material, Point, Step, stress_update
@@ -240,19 +242,21 @@ def update_rest(loop: StressLoop, chunk: int, sums: Any) -> None:
         count(update_stress(loop, p), sums, chunk)
 
 
-def update_stresses(loop: StressLoop, first: int, last: int, sums: Any) -> None:
+def update_stresses(
+    loop: StressLoop, first: int, last: int, sums: Any, call: Callable[..., Any] = call
+) -> None:
     """Deformation gradients, volumes, stresses and temperatures at the end of the step.
 
     Does the chunks ``first`` to ``last`` of particles and stores in ``sums`` (chunks, STRESS_SUMS) each one's
-    :class:`Stressed`.
+    :class:`Stressed`. Kernels are called by ``call``.
     """
     particles = len(loop.particles)
     if not _by_eight(loop):
-        update_singly(loop, first, last, sums)
+        call(update_singly, loop, first, last, sums)
         return
-    update_by_eight(loop, first, last, sums)
+    call(update_by_eight, loop, first, last, sums)
     if particles % WIDTH and first <= particles // CHUNK < last:
-        update_rest(loop, last - 1, sums)
+        call(update_rest, loop, last - 1, sums)
 
 
 def _by_eight(loop: StressLoop) -> bool:
