@@ -447,6 +447,7 @@ class Simulation:
             face_forces=dict(self.face_forces),
             node_positions=self.node_positions,
             workspace=self._workspace,
+            call=self._call,
         )
 
     def stress_at_nodes(self, m: int, stress: Array) -> None:

@@ -36,7 +36,8 @@ class ApproachContact(ContactLaw):
 
     def apply(self, part: int, scene: ContactScene) -> None:
         """Stop approach and slip, within Coulomb's limit."""
-        apply_approach(
+        scene.call(
+            apply_approach,
             scene.velocity(part),
             scene.nodal.mass,
             scene.nodal.volume,

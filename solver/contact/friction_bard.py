@@ -52,7 +52,8 @@ class FrictionBard(ContactLaw):
         """Stop approach and slip, within Coulomb's limit."""
         if part == 1 and self.OneOrTwoStep != 2:
             return
-        apply_friction(
+        scene.call(
+            apply_friction,
             scene.velocity(part),
             scene.nodal.mass,
             scene.nodal.volume,

@@ -38,7 +38,8 @@ class LogisticRegressionFriction(ContactLaw):
             return
         surfaces = scene.once(touching_surfaces)
         nodes = scene.once(touching_nodes)
-        slide_apart(
+        scene.call(
+            slide_apart,
             scene.velocity(part),
             scene.nodal.mass,
             surfaces,

@@ -66,10 +66,10 @@ class FrictionLRVar(LogisticRegressionFriction):
         color = scene.workspace.zeros("color at nodes", len(scene.owned_nodes), float)
         particles = scene.particles[self.master_material]
         shapes = particle_shapes(scene, self.master_material)
-        add_weighted(shapes, particles.color, particles.mass, color)
+        scene.call(add_weighted, shapes, particles.color, particles.mass, color)
         scene.exchange.add(color)()
         mean = scene.workspace.rows("mean color", len(nodes), float)
-        divide_at(nodes, color, scene.nodal.mass[self.master_material], mean)
+        scene.call(divide_at, nodes, color, scene.nodal.mass[self.master_material], mean)
         table = np.array(self.variable_friction.entry)
         return np.interp(mean, table[:, 0], table[:, 1])
 

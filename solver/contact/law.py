@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.declare import IntVector, Parameter, Vector
+from solver.deferred import directly
 from solver.dispatch import inline
 from solver.domains.exchange import Exchange, OneRank
 from solver.grid import Grid
@@ -81,6 +82,8 @@ class ContactScene:
     """(N, 3)"""
     workspace: Workspace = field(default_factory=Workspace)
     """Arrays of nodes and particles that laws fill anew in each step."""
+    call: Callable[..., Any] = directly
+    """Calls a kernel, given first, with values of types that are the same in all steps."""
     _shared: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:

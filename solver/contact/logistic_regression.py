@@ -75,13 +75,13 @@ def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
     near = []
     for m, shape in enumerate(shapes):
         near.append(workspace.rows(f"near touching {m}", len(shape.position), np.bool_))
-        count_neighbours(shape, alpha, latest, counts[m], near[m])
+        scene.call(count_neighbours, shape, alpha, latest, counts[m], near[m])
     nodes = scene.list_of_nodes("nodes with neighbours")
-    nodes = nodes[: list_touching(counts, alpha, nodes)]
+    nodes = nodes[: scene.call(list_touching, counts, alpha, nodes)]
 
     neighbours = _neighbours(scene, alpha, counts, shapes, near)
     normal = workspace.zeros("separating normals", count, float, 3)
-    separate(nodes, neighbours, PENALTY * scene.grid.spacing[0] ** 2, normal)
+    scene.call(separate, nodes, neighbours, PENALTY * scene.grid.spacing[0] ** 2, normal)
     scene.boundary_conditions.apply_symmetry(normal, 0)
     _make_unit(scene, normal, alpha)
 
@@ -89,7 +89,7 @@ def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
     prominence[:] = -np.inf
     surfaces = TouchingSurfaces(alpha, normal, prominence)
     for m, shape in enumerate(shapes):
-        reach(shape, near[m], bodies[m].surface, scene.grid.spacing, m, surfaces)
+        scene.call(reach, shape, near[m], bodies[m].surface, scene.grid.spacing, m, surfaces)
     _share(scene, surfaces)
     return surfaces
 
@@ -97,7 +97,7 @@ def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
 def touching_nodes(scene: ContactScene) -> Array:
     """The nodes where bodies touch, in order; use it with ``scene.once``."""
     nodes = scene.list_of_nodes("touching nodes")
-    return nodes[: list_chosen(scene.once(touching_surfaces).alpha, nodes)]
+    return nodes[: scene.call(list_chosen, scene.once(touching_surfaces).alpha, nodes)]
 
 
 class _Seen(NamedTuple):
@@ -131,7 +131,7 @@ def alpha_materials(scene: ContactScene) -> Array:
     """(N,) at the patches' nodes that several materials share, a rigid one, else that of most mass."""
     alpha = scene.list_of_nodes("alpha materials")
     possible, rigid = np.array(scene.possible_alpha, bool), np.array(scene.rigid, bool)
-    choose_alpha(scene.nodal.mass, possible, rigid, scene.owned_nodes, alpha)
+    scene.call(choose_alpha, scene.nodal.mass, possible, rigid, scene.owned_nodes, alpha)
     return alpha
 
 
@@ -191,7 +191,7 @@ def _neighbours(
 ) -> Neighbours:
     start = scene.workspace.rows("first neighbours", len(alpha) + 1, np.int64)
     following = scene.list_of_nodes("following neighbours")
-    total = lay_out_lists(alpha, counts, start, following)
+    total = scene.call(lay_out_lists, alpha, counts, start, following)
     neighbours = Neighbours(
         start,
         scene.workspace.rows("positions of neighbours", total, float, 3),
@@ -199,7 +199,7 @@ def _neighbours(
     )
     latest = scene.list_of_nodes("latest particle at nodes")
     for m, shape in enumerate(shapes):
-        list_neighbours(shape, near[m], m, alpha, latest, following, neighbours)
+        scene.call(list_neighbours, shape, near[m], m, alpha, latest, following, neighbours)
     return neighbours
 
 
@@ -221,7 +221,7 @@ def _make_unit(scene: ContactScene, normal: Array, alpha: Array) -> None:
     squares = scene.workspace.rows("squares of normals", len(normal), float, 3)
     sizes = scene.workspace.rows("sizes of normals", len(normal), float)
     np.add.reduce(np.multiply(normal, normal, out=squares), axis=1, out=sizes)
-    divide_normals(normal, np.sqrt(sizes, out=sizes), alpha)
+    scene.call(divide_normals, normal, np.sqrt(sizes, out=sizes), alpha)
 
 
 @deferred_kernel

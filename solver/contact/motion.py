@@ -234,8 +234,13 @@ class PrescribedMotion(ContactLaw):
     def master_nodes(self, scene: ContactScene) -> Array:
         """Indices of the patches' nodes that hold mass of the master and none of the excluded material."""
         nodes = scene.list_of_nodes("nodes of the master")
-        count = list_master_nodes(
-            scene.nodal.mass, self.master_material, self.ExcludeMaterial, scene.owned_nodes, nodes
+        count = scene.call(
+            list_master_nodes,
+            scene.nodal.mass,
+            self.master_material,
+            self.ExcludeMaterial,
+            scene.owned_nodes,
+            nodes,
         )
         return nodes[:count]
 
@@ -298,7 +303,7 @@ def counted_and_others(
 ) -> list[tuple[Array, Reactions]]:
     """Nodes whose reactions count, and copies that other ranks count, each with where its reactions go."""
     parted = scene.list_of_nodes("counted nodes and others")[: len(nodes)]
-    counted = part_nodes(nodes, scene.exchange.counted, parted)
+    counted = scene.call(part_nodes, nodes, scene.exchange.counted, parted)
     return [(parted[:counted], reactions), (parted[counted:], new_reactions(len(reactions.force)))]
 
 

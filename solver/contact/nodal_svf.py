@@ -43,7 +43,8 @@ class NodalVolumeFraction(ContactLaw):
             return
         first, second = scene.listed(self.materials)
         nodal = scene.nodal
-        drag(
+        scene.call(
+            drag,
             nodal.velocity_star,
             nodal.mass,
             nodal.volume,

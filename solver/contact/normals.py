@@ -61,9 +61,10 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
     wanted = new("shared", count, np.uint8)
     wanted[shared] = 1
     near = new("near shared", count, np.bool_)
-    mark_cells_near(scene.grid.index, shared, near)
+    scene.call(mark_cells_near, scene.grid.index, shared, near)
     for m, particles in enumerate(scene.particles):
-        add_particles(
+        scene.call(
+            add_particles,
             particle_shapes(scene, m),
             wanted,
             near,
@@ -82,17 +83,17 @@ def surface_fields(scene: ContactScene) -> SurfaceFields:
         complete()
     if scene.colinear_normals:
         averaged = scene.workspace.rows("normals of a node", materials, float, 3)
-        make_colinear(shared, fields.normal, nodal.mass, averaged)
+        scene.call(make_colinear, shared, fields.normal, nodal.mass, averaged)
     for m in range(materials):
         scene.boundary_conditions.apply_symmetry(fields.normal[m], m, wanted)
-    finish(shared, fields, nodal.mass, stress)
+    scene.call(finish, shared, fields, nodal.mass, stress)
     return fields
 
 
 def shared_nodes(scene: ContactScene) -> Array:
     """The nodes that two or more materials have mass at, in order; use it with ``scene.once``."""
     shared = scene.list_of_nodes("shared nodes")
-    return shared[: list_shared(scene.nodal.mass, shared)]
+    return shared[: scene.call(list_shared, scene.nodal.mass, shared)]
 
 
 def _density(scene: ContactScene, particles: Particles) -> Array:

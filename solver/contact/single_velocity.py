@@ -27,7 +27,8 @@ class SingleVelocity(ContactLaw):
         """Give the listed materials one velocity."""
         if part == 1 and self.OneOrTwoStep != 2:
             return
-        share_velocity(
+        scene.call(
+            share_velocity,
             scene.velocity(part),
             scene.nodal.mass,
             scene.listed(self.materials),

@@ -85,7 +85,8 @@ class Specified(PrescribedMotion):
         nodal = scene.nodal
         nodes = self.master_nodes(scene)
         if part == 1:
-            impose_velocity(
+            scene.call(
+                impose_velocity,
                 nodal.velocity,
                 nodes,
                 self.acted_on(scene),
@@ -98,7 +99,8 @@ class Specified(PrescribedMotion):
         self.watch_condition(scene)
         reactions = new_reactions(nodal.mass.shape[0])
         for part_of_nodes, its_reactions in counted_and_others(scene, self.filled(scene, nodes), reactions):
-            impose_velocity_star(
+            scene.call(
+                impose_velocity_star,
                 nodal.velocity_star,
                 nodal.mass,
                 nodal.internal_force,
@@ -122,7 +124,8 @@ class Specified(PrescribedMotion):
     def filled(self, scene: ContactScene, nodes: Array) -> Array:
         """Those of the nodes that all materials together fill beyond the constraint."""
         filled = scene.list_of_nodes("filled nodes")
-        count = list_filled(
+        count = scene.call(
+            list_filled,
             nodes,
             scene.nodal.volume,
             scene.node_to_cell_weight,

@@ -48,7 +48,8 @@ class SpecifiedFriction(PrescribedMotion):
         nodal = scene.nodal
         reactions = new_reactions(nodal.mass.shape[0])
         for nodes, its_reactions in counted_and_others(scene, owned_nodes(scene), reactions):
-            slide_on_master(
+            scene.call(
+                slide_on_master,
                 scene.velocity(part),
                 nodal.mass,
                 nodal.internal_force,
@@ -69,7 +70,7 @@ class SpecifiedFriction(PrescribedMotion):
 def owned_nodes(scene: ContactScene) -> Array:
     """The indices of the patches' nodes."""
     nodes = scene.list_of_nodes("owned nodes")
-    return nodes[: list_owned(scene.owned_nodes, nodes)]
+    return nodes[: scene.call(list_owned, scene.owned_nodes, nodes)]
 
 
 @deferred_kernel

@@ -35,8 +35,3 @@ class Calls:
         elif self.checks and kernel.for_types_of(*values) is not known:
             raise TypeError(f"{kernel.__name__} is called with values of other types than before")
         return known(*values)
-
-
-def call(kernel: Any, *values: Any) -> Any:
-    """The same for a single call."""
-    return kernel(*values)

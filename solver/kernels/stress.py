@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.declare import Vector
+from solver.deferred import directly
 from solver.dispatch import inline, singly, takes_lanes
 from solver.jit import kernel
-from solver.jit.calls import call
 from solver.kernels.chunks import CHUNK
 from solver.lanes import WIDTH, Eight, everywhere, floor, largest_of, sum_of, where
 from solver.materials.constitutive import Material, Point, Step, stress_update
@@ -243,7 +243,7 @@ def update_rest(loop: StressLoop, chunk: int, sums: Any) -> None:
 
 
 def update_stresses(
-    loop: StressLoop, first: int, last: int, sums: Any, call: Callable[..., Any] = call
+    loop: StressLoop, first: int, last: int, sums: Any, call: Callable[..., Any] = directly
 ) -> None:
     """Deformation gradients, volumes, stresses and temperatures at the end of the step.
 
