@@ -81,7 +81,13 @@ def touching_surfaces(scene: ContactScene) -> TouchingSurfaces:
 
     neighbours = _neighbours(scene, alpha, counts, shapes, near)
     normal = workspace.zeros("separating normals", count, float, 3)
-    scene.call(separate, nodes, neighbours, PENALTY * scene.grid.spacing[0] ** 2, normal)
+    newton = Newton(
+        workspace.rows("separation: phi", 4, float),
+        workspace.rows("separation: matrix", 4, float, 4),
+        workspace.rows("separation: right-hand side", 4, float),
+        workspace.rows("separation: position", 4, float),
+    )
+    scene.call(separate, nodes, neighbours, PENALTY * scene.grid.spacing[0] ** 2, newton, normal)
     scene.boundary_conditions.apply_symmetry(normal, 0)
     _make_unit(scene, normal, alpha)
 
@@ -291,24 +297,37 @@ def list_neighbours(
             following[n] += 1
 
 
+class Newton(NamedTuple):
+    """Room for Newton's iteration. In memory: in registers, the compiler rounds otherwise than Uintah's does.
+
+    Where the iteration does not settle, its last digits decide which direction is taken.
+    """
+
+    phi: Array
+    """(4,)"""
+    matrix: Array
+    """(4, 4)"""
+    right: Array
+    """(4,)"""
+    x: Array
+    """(4,)"""
+
+
 @deferred_kernel
-def separate(nodes: Array, neighbours: Neighbours, penalty: float, normal: Array) -> None:
+def separate(nodes: Array, neighbours: Neighbours, penalty: float, newton: Newton, normal: Array) -> None:
     """Find the normal (N, 3) of the plane between the alpha material and the others at the given nodes.
 
     Newton's iteration for the phi that minimises sum (c - f)^2 + penalty |phi|^2 with
     f = 2 / (1 + exp(-(phi_xyz . x + phi_0))) - 1 and c = -1 or 1 the side of a particle. It ends when the
     direction stays; if it never does, the direction that changed least is taken.
     """
-    matrix, right, phi = scratch_rows(4, 4), scratch_numbers(4, np.float64), scratch_numbers(4, np.float64)
+    phi, matrix, right = newton.phi, newton.matrix, newton.right
     for n in nodes:
-        for i in range(4):
-            phi[i] = 0.0
+        phi[:] = 0.0
         direction = best = (0.0, 0.0, 0.0)
         least_change = 1.0
         for _ in range(MOST_ITERATIONS):
-            newton_system(
-                neighbours, neighbours.start[n], neighbours.start[n + 1], phi, penalty, matrix, right
-            )
+            newton_system(neighbours, neighbours.start[n], neighbours.start[n + 1], penalty, newton)
             solve_in_place(matrix, right)
             for i in range(4):
                 phi[i] += right[i]
@@ -324,11 +343,9 @@ def separate(nodes: Array, neighbours: Neighbours, penalty: float, normal: Array
 
 
 @inline
-def newton_system(
-    neighbours: Neighbours, first: int, last: int, phi: Array, penalty: float, matrix: Array, right: Array
-) -> None:
-    """Matrix (4, 4) and right-hand side (4,) of one Newton step over the particles first <= e < last."""
-    x = scratch_numbers(4, np.float64)
+def newton_system(neighbours: Neighbours, first: int, last: int, penalty: float, newton: Newton) -> None:
+    """Matrix and right-hand side of one Newton step over the particles first <= e < last."""
+    phi, matrix, right, x = newton.phi, newton.matrix, newton.right, newton.x
     x[3] = 1.0
     for i in range(4):
         for j in range(4):
