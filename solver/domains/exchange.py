@@ -13,7 +13,7 @@ from solver.domains.communicator import Alone, Communicator
 from solver.domains.decomposition import CELL_WORK, Domain, cut, imbalance
 from solver.domains.halo import Halo
 from solver.domains.images import periodic_images
-from solver.domains.migration import Records, Room, joined, leavers, owners, packed, unpacked
+from solver.domains.migration import Records, Room, is_empty, joined, leavers, owners, packed, unpacked
 from solver.grid import Grid, Window
 
 Array = NDArray[Any]
@@ -224,7 +224,7 @@ class ManyRanks:
         """Send leavers to neighbours; those who go farther wait for the end of the step."""
         neighbours = self.halo.neighbours
         gone, to = self._leavers(bodies)
-        near = [np.isin(ranks, neighbours) for ranks in to]
+        near = [np.isin(ranks, neighbours) if len(ranks) else np.zeros(0, bool) for ranks in to]
         self._far = sum(int(np.count_nonzero(~n)) for n in near)
         carried = [body.records for body in bodies]
         messages = {
@@ -246,7 +246,8 @@ class ManyRanks:
         """Take those who left out of the bodies, and put those who came in, by the rank they came from."""
         self._rooms = self._rooms or [Room() for _ in bodies]
         carried = [body.records for body in bodies]
-        came = [unpacked(carried, received[rank]) for rank in sorted(received)]
+        filled = [rank for rank in sorted(received) if not is_empty(received[rank], len(bodies))]
+        came = [unpacked(carried, received[rank]) for rank in filled]
         for m, body in enumerate(bodies):
             parts = [part[m] for part in came if len(part[m][0].position)]
             if len(gone[m]) or parts:

@@ -27,6 +27,8 @@ def owners(grid: Grid, domains: Sequence[Domain], positions: Array) -> Array:
 
     In periodic directions positions go on at the other side.
     """
+    if not len(positions):  # as in most steps
+        return np.zeros(0, np.int64)
     cells = grid.cell_of(positions)
     for axis in range(3):
         n = grid.cells[axis]
@@ -76,6 +78,11 @@ def packed(bodies: Sequence[Records], chosen: Sequence[Array]) -> bytes:
         for array in record
     ]
     return b"".join([numbers.tobytes(), *(array.tobytes() for array in arrays)])
+
+
+def is_empty(message: bytes, bodies: int) -> bool:
+    """Whether another rank packed no particle of any of so many bodies."""
+    return not np.frombuffer(message, np.int64, bodies).any()
 
 
 def unpacked(bodies: Sequence[Records], message: bytes) -> list[Records]:
