@@ -11,6 +11,7 @@ import os
 import pickle
 import subprocess
 import sys
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -46,6 +47,7 @@ def _start(missing: Sequence[tuple[Kernel, Any]]) -> None:
     assert process.stdin is not None
     with process.stdin as pipe:
         pipe.write(pickle.dumps(names))
+    threading.Thread(target=process.wait, daemon=True).start()  # nobody else may ask how it ended
     for kernel, signature in missing:
         kernel.is_compiled_by(process, signature)
 
