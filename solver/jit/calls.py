@@ -10,6 +10,9 @@ from typing import Any, ClassVar
 
 from solver.jit.cache import Kernel
 
+# isort: split
+from numba._dispatcher import compute_fingerprint
+
 
 class Calls:
     """Calls kernels, looking at the types of values at the first call of each only.
@@ -25,13 +28,13 @@ class Calls:
     checks: ClassVar[bool] = False
 
     def __init__(self) -> None:
-        self._known: dict[Kernel, Callable[..., Any]] = {}
+        self._known: dict[Kernel, tuple[Callable[..., Any], bytes]] = {}
 
     def __call__(self, kernel: Any, *values: Any) -> Any:
         """What the kernel returns for the values."""
         known = self._known.get(kernel)
         if known is None:
-            known = self._known[kernel] = kernel.for_types_of(*values)
-        elif self.checks and kernel.for_types_of(*values) is not known:
+            known = self._known[kernel] = (kernel.for_types_of(*values), compute_fingerprint(values))
+        elif self.checks and compute_fingerprint(values) != known[1]:
             raise TypeError(f"{kernel.__name__} is called with values of other types than before")
-        return known(*values)
+        return known[0](*values)

@@ -15,6 +15,7 @@ from numba.core.codegen import JITCodeLibrary
 
 from solver.dispatch import inline
 from solver.jit import kernel
+from solver.jit.calls import Calls
 
 PROGRAM = """
 import os
@@ -191,3 +192,16 @@ def test_what_a_helper_knows_of_python_reaches_the_kernel_that_contains_it() -> 
     with pytest.raises(ValueError, match="no root of") as raised:
         roots(np.array([4.0, -1.0]))
     assert raised.value.args == ("no root of", -1.0)
+
+
+@pytest.mark.parametrize("other", [np.arange(3), np.zeros((3, 1)), np.zeros((3, 2))[:, 0], (np.zeros(3),)])
+def test_kernels_that_are_called_in_steps_are_given_the_same_types(other) -> None:
+    @kernel
+    def first(numbers):
+        return numbers[0]
+
+    call = Calls()
+    assert call(first, np.array([2.0, 3.0])) == 2.0
+    assert call(first, np.zeros(5)) == 0.0
+    with pytest.raises(TypeError, match="first is called with values of other types"):
+        call(first, other)
