@@ -62,14 +62,13 @@ class Around(NamedTuple):
     upper: Lanes
 
 
-@inline
-def chosen(condition: Any, a: Around, b: Around) -> Around:
-    """``a`` where the condition holds, else ``b``."""
-    return Around(
-        where(condition, a.lower, b.lower),
-        where(condition, a.middle, b.middle),
-        where(condition, a.upper, b.upper),
-    )
+class AtNodes(NamedTuple):
+    """The four numbers of :class:`solver.interpolation.revolved.Radial`, each at a node and its neighbours."""
+
+    w: Around
+    v: Around
+    g: Around
+    t: Around
 
 
 @inline
@@ -102,17 +101,9 @@ def slope_reached(distance: Lanes, side: float, xi: Lanes, r: Lanes, lp: Lanes) 
     return side * distance / (2.0 * lp) * (1.0 - (xi + side * (2.0 - lp)) / (2.0 * (2.0 * r + xi)))
 
 
-@implements(radial, GimpAxisymmetric)
-def _(interpolator: Any, f: Lanes, width: Lanes, node: Lanes, x: Lanes, h: float) -> Radial:
-    """Radius-weighted averages of the hat function (Nairn and Guilkey 2015, their equations for axisymmetric GIMP).
-
-    Three forms: the particle straddles the node nearest to it; it lies inside the cell; it is the first beyond the
-    axis. Where it lies inside, the width 1/2 is built in to the weights that meet the derivative along the axis, as
-    in Uintah.
-    """
-    lp, none = width, every(0.0)
-    upper = above(f, 0.75)  # 1 where the upper node of the cell is nearest
-    xi, r = 2.0 * (f - upper), node + upper
+@inline
+def straddling(xi: Lanes, r: Lanes, lp: Lanes, x: Lanes) -> AtNodes:
+    """A particle that straddles its nearest node: xi is its offset in half cells, r the node's radius in cells."""
     # Measured from the far nodes, as Uintah does (see averaged_hat).
     up, down = 2.0 + lp + (xi - 2.0), 2.0 + lp - (xi + 2.0)
     w = Around(
@@ -120,7 +111,6 @@ def _(interpolator: Any, f: Lanes, width: Lanes, node: Lanes, x: Lanes, h: float
         straddled(xi, r, lp),
         reached(up, 1.0, xi - 2.0, r + 1.0, lp),
     )
-    v = w
     g = Around(
         slope_reached(down, -1.0, xi + 2.0, r - 1.0, lp),
         -xi / lp - (lp * lp - xi * xi) / (2.0 * lp * (2.0 * r + xi)),
@@ -129,23 +119,47 @@ def _(interpolator: Any, f: Lanes, width: Lanes, node: Lanes, x: Lanes, h: float
     t = Around(
         down * down / (8.0 * lp) / x, ((4.0 - lp) * lp - xi * xi) / (4.0 * lp) / x, up * up / (8.0 * lp) / x
     )
+    return AtNodes(w, w, g, t)
 
-    low, high, c = 1.0 - f, f, 1.0 / (2.0 * (node + f))
-    inside = (f > 0.25) & (f <= 0.75)
-    w = chosen(inside, Around(none, low - lp * lp / 6.0 * c, high + lp * lp / 6.0 * c), w)
-    v = chosen(inside, Around(none, low - c / 24.0, high + c / 24.0), v)
-    t = chosen(inside, Around(none, low / x, high / x), t)
 
-    first = (f <= 0.25) & (x < 0.5 * width * h)
-    at_axis = Around(none, (3.0 - up) / 3.0, up / 3.0)
-    w, v = chosen(first, at_axis, w), chosen(first, at_axis, v)
-    t = chosen(first, Around(none, (4.0 / up - 1.0) / h, 1.0 / h + none), t)
-    g = chosen(inside | first, Around(none, none - 1.0, none + 1.0), g)
+@inline
+def inside_cell(f: Lanes, node: Lanes, lp: Lanes, x: Lanes) -> AtNodes:
+    """A particle between two nodes. The width 1/2 is built in to v, as in Uintah."""
+    none, low, high, c = every(0.0), 1.0 - f, f, 1.0 / (2.0 * (node + f))
+    return AtNodes(
+        Around(none, low - lp * lp / 6.0 * c, high + lp * lp / 6.0 * c),
+        Around(none, low - c / 24.0, high + c / 24.0),
+        Around(none, none - 1.0, none + 1.0),
+        Around(none, low / x, high / x),
+    )
 
-    starts = w.lower > 0.0
-    w, v, g, t = from_lower(starts, w), from_lower(starts, v), from_lower(starts, g), from_lower(starts, t)
+
+@inline
+def beside_axis(f: Lanes, lp: Lanes, h: float) -> AtNodes:
+    """The first particle beyond the axis."""
+    none, up = every(0.0), 2.0 + lp + (2.0 * f - 2.0)
+    w = Around(none, (3.0 - up) / 3.0, up / 3.0)
+    t = Around(none, (4.0 / up - 1.0) / h, 1.0 / h + none)
+    return AtNodes(w, w, Around(none, none - 1.0, none + 1.0), t)
+
+
+@implements(radial, GimpAxisymmetric)
+def _(interpolator: Any, f: Lanes, width: Lanes, node: Lanes, x: Lanes, h: float) -> Radial:
+    """Radius-weighted averages of the hat function (Nairn and Guilkey 2015, their equations for axisymmetric GIMP)."""
+    upper = above(f, 0.75)  # 1 where the upper node of the cell is nearest
+    at = straddling(2.0 * (f - upper), node + upper, width, x)
+    at = where((f > 0.25) & (f <= 0.75), inside_cell(f, node, width, x), at)
+    at = where((f <= 0.25) & (x < 0.5 * width * h), beside_axis(f, width, h), at)
+    starts = at.w.lower > 0.0
+    w, v, g, t = (
+        from_lower(starts, at.w),
+        from_lower(starts, at.v),
+        from_lower(starts, at.g),
+        from_lower(starts, at.t),
+    )
+    below = where(starts, 1.0, 0.0) - upper
     return Radial(
-        where(starts, 1.0, 0.0) - upper,
+        below,
         w.lower,
         w.middle,
         w.upper,
