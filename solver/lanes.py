@@ -118,9 +118,11 @@ def floor(a: Any) -> Any:
 
 def where(condition: Any, a: Any, b: Any) -> Any:
     """``a`` where the condition holds, else ``b``: numbers, truths, tensors or records of them. Both are computed."""
-    if isinstance(condition, np.ndarray):
-        return Lanes(*np.where(condition, _numbers(a), _numbers(b)))
-    return a if condition else b
+    if not isinstance(condition, np.ndarray):
+        return a if condition else b
+    if isinstance(a, tuple):
+        return type(a)(*(where(condition, x, y) for x, y in zip(a, b, strict=True)))
+    return Lanes(*np.where(condition, _numbers(a), _numbers(b)))
 
 
 def like(value: Any, pattern: Any) -> Any:

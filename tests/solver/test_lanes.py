@@ -174,6 +174,13 @@ def test_records_are_chosen_part_by_part():
     np.testing.assert_array_equal(results, np.transpose(expected))
 
 
+def test_records_of_plain_lanes_are_chosen_part_by_part():
+    a, b = Lanes(*A), Lanes(*B)
+    chosen = where(a < b, Inner(a, 1.0), Inner(b, 2.0))
+    np.testing.assert_array_equal(chosen.number.numbers, np.minimum(A, B))
+    np.testing.assert_array_equal(chosen.holds.numbers, np.where(A < B, 1.0, 2.0))
+
+
 @kernel
 def whole_powers(rows, results):
     a = lanes_at(rows, 0, 0)

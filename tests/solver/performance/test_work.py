@@ -7,8 +7,8 @@ import pytest
 from mpm_cases import elastic, fill, make_body, make_grid, make_particles, make_simulation
 
 from solver.interpolation.cpdi import Cpdi
-from solver.interpolation.gimp import Gimp
-from solver.interpolation.linear import Linear
+from solver.interpolation.gimp import Gimp, GimpAxisymmetric
+from solver.interpolation.linear import Linear, LinearAxisymmetric
 from solver.particles import Particles
 from solver.performance.phases import Phase, PhaseClock, no_clock
 from solver.performance.work import ACCESS, active_nodes, domain_fields, weights_of, work_of_step
@@ -58,6 +58,16 @@ def test_a_phase_changes_the_arrays_that_the_model_names(phase: Phase) -> None:
 def test_domains_read_what_they_need() -> None:
     assert domain_fields(Gimp()) == {"size"}
     assert domain_fields(Cpdi()) == {"size", "deformation_gradient"}
+
+
+@pytest.mark.parametrize(("interpolator", "nodes"), [(LinearAxisymmetric(), 8), (GimpAxisymmetric(), 18)])
+def test_nodes_of_bodies_of_revolution(interpolator, nodes: int) -> None:
+    """Two or three along the radius and the axis, in two layers."""
+    grid = make_grid((8, 8, 1), extra=(1, 1, 0))
+    centres = fill((0, 2, 0), (4, 6, 1), grid.spacing, (1, 1, 1))
+    particles = make_particles(grid, centres + np.array((0.3, 0.3, 0.0)), (2, 2, 1))  # they reach over a node
+    simulation = make_simulation(grid, [make_body(particles)], interpolator, flags={"axisymmetric": True})
+    assert weights_of(simulation, simulation.bodies[0]).nodes == nodes
 
 
 def test_nodes_and_bytes_of_linear_weights() -> None:
