@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 from solver.jit.cache import Kernel
 
 # isort: split
+from numba import typeof
 from numba._dispatcher import compute_fingerprint
 
 
@@ -28,13 +29,27 @@ class Calls:
     checks: ClassVar[bool] = False
 
     def __init__(self) -> None:
-        self._known: dict[Kernel, tuple[Callable[..., Any], bytes]] = {}
+        self._known: dict[Kernel, Callable[..., Any]] = {}
+        self._types: dict[Kernel, Any] = {}
 
     def __call__(self, kernel: Any, *values: Any) -> Any:
         """What the kernel returns for the values."""
         known = self._known.get(kernel)
         if known is None:
-            known = self._known[kernel] = (kernel.for_types_of(*values), compute_fingerprint(values))
-        elif self.checks and compute_fingerprint(values) != known[1]:
+            known = self._known[kernel] = kernel.for_types_of(*values)
+        if self.checks:
+            self._check(kernel, values)
+        return known(*values)
+
+    def _check(self, kernel: Any, values: tuple[Any, ...]) -> None:
+        types = _types_of(values)
+        if self._types.setdefault(kernel, types) != types:
             raise TypeError(f"{kernel.__name__} is called with values of other types than before")
-        return known[0](*values)
+
+
+def _types_of(values: tuple[Any, ...]) -> Any:
+    """The types of values, as numba tells them apart: soon, where it knows how, else by looking at each part."""
+    try:
+        return compute_fingerprint(values)
+    except NotImplementedError:
+        return tuple(map(typeof, values))
