@@ -60,7 +60,7 @@ class Progress(Observer):
         """Print what was done and where it is."""
         if self._bar is not None:
             self._bar.stop()
-        self._say(summary(run, self._start[0]))
+        self._say(summary(run))
 
     def _say(self, line: str) -> None:
         print(line, file=self._stream, flush=True)
@@ -130,11 +130,12 @@ def _steps_foreseen(run: Run) -> int:
     return control.foreseen_steps(stable, simulation.time, simulation.step_number)
 
 
-def summary(run: Run, first: float) -> str:
-    """One line that says what was done; the first step, ``first`` s, may have compiled or loaded kernels."""
+def summary(run: Run) -> str:
+    """One line that says what was done; the time of a step without the first, which may have compiled kernels."""
     steps, seconds, reached = run.steps_done, run.wall_time, run.simulation.time
     how = "failed" if run.failed else run.stop_reason or "done"
-    each = f", {1e3 * (seconds - first) / (steps - 1):.3g} ms/step after the first" if steps > 1 else ""
+    later = 1e3 * (seconds - run.first_seconds) / max(1, steps - 1)
+    each = f", {later:.3g} ms/step after the first" if steps > 1 else ""
     return (
         f"{how}: {steps} step{'s' * (steps != 1)} to time {reached:.6g} in {clock(seconds)}{each}; "
         f"archive {run.directory}"

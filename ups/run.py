@@ -60,6 +60,7 @@ class Run:
     materials : what the materials are, each in a word or two.
     directory : the archive that is written.
     particles : how many there are at the start, on all ranks.
+    first_seconds : wall time at the end of the first step, in which kernels may have been compiled or loaded.
     """
 
     simulation: Simulation
@@ -75,6 +76,7 @@ class Run:
     materials: Sequence[str] = ()
     directory: Path | None = None
     particles: int = 0
+    first_seconds: float = 0.0
     first_step: int = field(init=False)
     _started: float = field(default_factory=time.perf_counter)
     _asked_to_stop: str = ""
@@ -145,6 +147,8 @@ class Run:
         for observer in self.observers:
             observer.after_step(self)
         self._agree()
+        if self.steps_done == 1:
+            self.first_seconds = self.wall_time
 
     def _advance(self, dt: float) -> tuple[float, float]:
         """Make a step, of a tenth of dt as often as nodes are too fast; its size, and the stable next."""

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import io
+import re
 import subprocess
 import sys
+import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from small_decks import LEFT, deck, write
+from thread_ranks import on_ranks
 
 import ups
 from ups.archive import Archive
 from ups.deck import Deck, read_deck
 from ups.diagnostics import DeckError
+from ups.progress import Progress
 from ups.run import Observer, Run
 from ups.session import run_deck
 
@@ -157,3 +163,27 @@ def test_importing_ups_is_cheap() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+class SlowStart(Observer):
+    """Holds up the first step, as compiling does."""
+
+    def before_step(self, run: Run, dt: float) -> None:
+        if run.steps_done == 0:
+            time.sleep(1.0)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_the_last_line_leaves_the_first_step_out(tmp_path: Path, ranks: int) -> None:
+    path, said = write(tmp_path, deck()), io.StringIO()
+    run_deck(read_deck(path), output=tmp_path / "before.uda")  # kernels are there
+
+    def run(rank: Any) -> None:
+        observers = [SlowStart(), *([Progress(said)] if rank.rank == 0 else [])]
+        run_deck(read_deck(path), output=tmp_path / "a.uda", observers=observers, communicator=rank)
+
+    on_ranks(ranks, run)
+    found = re.search(r"in (\S+) s, (\S+) ms/step after the first", said.getvalue())
+    assert found is not None
+    assert float(found[1]) >= 1.0
+    assert float(found[2]) < 100.0
