@@ -50,7 +50,7 @@ class Radial(NamedTuple):
     """Weights of eight particles, one a lane, along the radius on up to three nodes next to each other."""
 
     below: Lanes
-    """Nodes from the lower node of the particle's cell down to the first of the three: 0 or 1."""
+    """Nodes from the lower node of the particle's cell down to the first of the three: 0 or 1, or -1 for one up."""
     w0: Lanes
     w1: Lanes
     w2: Lanes

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +28,13 @@ def compile_ahead(jobs: Sequence[Job], processes: int) -> None:
 
     Who calls such a kernel waits until it is there, and compiles it where the other process failed.
     """
+    if processes < 1:
+        return
     signatures = {(kernel, tuple(map(kernel.typeof_pyval, values))): None for kernel, values in jobs}
     missing = [(kernel, signature) for kernel, signature in signatures if not kernel.is_stored(signature)]
     for first in range(min(processes, len(missing))):
-        _start(missing[first::processes])
+        with suppress(OSError):  # no process is to be had
+            _start(missing[first::processes])
 
 
 def _start(missing: Sequence[tuple[Kernel, Any]]) -> None:

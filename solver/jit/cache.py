@@ -112,14 +112,18 @@ class Kernel(CPUDispatcher):
     Extensions that other packages bring to numba are looked for when it compiles, not at the first call.
     """
 
+    _cache: Any
+
     def enable_caching(self) -> None:
         """Look on the disk before compiling."""
-        self._cache = _Cache(self.py_func)
+        if not isinstance(
+            self._cache, _Cache
+        ):  # at the first call, as most kernels are never called in a run
+            self._cache = _Cache(self.py_func)
 
     def compile(self, sig: Any) -> Any:
         """Machine code for arguments of some types."""
-        if not self.overloads:
-            self.enable_caching()  # now, as most kernels are never called in a run
+        self.enable_caching()
         compiler = _elsewhere.get((self, sig))  # several threads may ask
         if compiler is not None and compiler.poll() is None:
             with event.trigger_event("numba:compile", data={"dispatcher": self, "args": sig}):
@@ -137,7 +141,8 @@ class Kernel(CPUDispatcher):
 
     def is_stored(self, sig: Any) -> bool:
         """Whether machine code for arguments of some types is on the disk."""
-        return _Cache(self.py_func).holds(sig, self.targetctx)
+        self.enable_caching()
+        return self._cache.holds(sig, self.targetctx)
 
     def is_compiled_by(self, process: subprocess.Popen[bytes], sig: Any) -> None:
         """Another process compiles it for arguments of some types; it is waited for when it is needed."""
