@@ -6,37 +6,25 @@ the nodes get S / x, which the hoop components need.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver.dispatch import generic, implements, inline, lanewise
+from solver.dispatch import generic, inline, lanewise
 from solver.grid import GridIndex, NodeBlock
-from solver.interpolation.shape import (
-    Content,
-    Gathered,
-    Room,
-    Sums,
-    gather,
-    is_near,
-    nothing,
-    particle_domain,
-    prepare,
-    scatter,
-    shape_functions,
-)
+from solver.interpolation.shape import Content, Gathered, Room, Sums, nothing
 from solver.interpolation.stencil import (
     COUNT,
     FIRST,
     G,
+    Interpolator,
     W,
     add_to_node,
     alone,
     any_reach,
     corner,
     prepare_direction,
-    product_is_near,
-    undeformed,
+    prepared_by_eight,
 )
 from solver.lanes import Lanes, UpToEight, above, every, floor, lanes_at, put_lanes
 from solver.particles import Particles
@@ -233,15 +221,8 @@ def revolved_shape_functions(
     return n
 
 
-Interpolator = TypeVar("Interpolator", bound=type)
-
-
 def of_revolution(interpolator: Interpolator) -> Interpolator:
     """Class decorator: shape functions are products of what the class implements as ``radial`` and ``direction``."""
-    implements(particle_domain, interpolator)(undeformed)
-    implements(shape_functions, interpolator)(revolved_shape_functions)
-    implements(prepare, interpolator)(prepare_revolved)
-    implements(is_near, interpolator)(product_is_near)
-    implements(scatter, interpolator)(scatter_revolved)
-    implements(gather, interpolator)(gather_revolved)
-    return interpolator
+    return prepared_by_eight(
+        interpolator, revolved_shape_functions, prepare_revolved, scatter_revolved, gather_revolved
+    )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -284,12 +285,29 @@ Interpolator = TypeVar("Interpolator", bound=type)
 
 def separable(interpolator: Interpolator) -> Interpolator:
     """Class decorator: shape functions are products of what the class implements as ``direction``."""
+    return prepared_by_eight(
+        interpolator, product_shape_functions, prepare_product, scatter_product, gather_product
+    )
+
+
+def prepared_by_eight(
+    interpolator: Interpolator,
+    functions: Callable[..., int],
+    prepares: Callable[..., bool],
+    scatters: Callable[..., None],
+    gathers: Callable[..., Gathered],
+) -> Interpolator:
+    """Give a class the bodies of what an interpolator does, for particles that keep their initial size.
+
+    ``prepares`` leaves in ``Room.factors`` where the nodes of each particle begin and how many there are, as
+    :func:`corner` reads it.
+    """
     implements(particle_domain, interpolator)(undeformed)
-    implements(shape_functions, interpolator)(product_shape_functions)
-    implements(prepare, interpolator)(prepare_product)
     implements(is_near, interpolator)(product_is_near)
-    implements(scatter, interpolator)(scatter_product)
-    implements(gather, interpolator)(gather_product)
+    implements(shape_functions, interpolator)(functions)
+    implements(prepare, interpolator)(prepares)
+    implements(scatter, interpolator)(scatters)
+    implements(gather, interpolator)(gathers)
     return interpolator
 
 
